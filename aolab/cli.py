@@ -1,0 +1,162 @@
+"""The shell: `aolab render|modules|scenes|bench|doctor`. Errors are one line on stderr and exit code 2."""
+
+import json
+import sys
+import warnings
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from .errors import Error, Notice, ParameterError
+
+app = typer.Typer(
+    name="aolab",
+    help="A laboratory for ambient lighting in image space.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+Json = Annotated[bool, typer.Option("--json", help="For programs: print JSON.")]
+
+
+def main() -> None:
+    """Entry point: like `app()`, with our own errors told in one line (`--debug` shows where they came from)."""
+    debug = "--debug" in sys.argv
+    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
+    warnings.simplefilter("always", Notice)
+    warnings.showwarning = _show_notice
+    try:
+        app(arguments, prog_name="aolab")
+    except Error as error:
+        if debug:
+            raise
+        print(f"aolab: {error}", file=sys.stderr)
+        sys.exit(2)
+    except KeyboardInterrupt:
+        sys.exit(130)
+
+
+def _show_notice(message: Any, category: type[Warning], filename: str, lineno: int, *_: Any) -> None:
+    kind = "note" if issubclass(category, Notice) else f"{filename}:{lineno}: {category.__name__}"
+    print(f"aolab: {kind}: {message}", file=sys.stderr)
+
+
+@app.command()
+def render(
+    scene: Annotated[str | None, typer.Argument(help="A scene's name (its parameters as in 'toasters?time=1'), or a model file.")] = None,
+    module: Annotated[str | None, typer.Option(help="The method; see `aolab modules`. Default: ssao.")] = None,
+    set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="A parameter of the module; repeatable.")] = None,
+    occluders: Annotated[str | None, typer.Option(metavar="KIND", help="What is tested for blocking.")] = None,
+    size: Annotated[str | None, typer.Option(metavar="WxH", help="Pixels. Default: 1280x720.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Chooses the sample set. Default: 0.")] = None,
+    accumulate: Annotated[int | None, typer.Option(metavar="K", help="Average K frames with different sample sets. Default: 1.")] = None,
+    eye: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Camera position; needs --target.")] = None,
+    target: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="The point that the camera looks at.")] = None,
+    fov: Annotated[float | None, typer.Option(metavar="DEGREES", help="Vertical field of view.")] = None,
+    exposure: Annotated[float | None, typer.Option(help="Multiplies radiance before the tone map. Default: 1.")] = None,
+    tone_map: Annotated[str | None, typer.Option(help="filmic or linear. Default: filmic.")] = None,
+    like: Annotated[Path | None, typer.Option(metavar="FILE.png", help="Make this picture again; other options override.")] = None,
+    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.png")] = Path("out.png"),
+    buffers: Annotated[Path | None, typer.Option(metavar="FILE.npz", help="Write every buffer by name.")] = None,
+    stats: Annotated[Path | None, typer.Option(metavar="FILE.json", help="Write parameters and timings of a warm frame.")] = None,
+) -> None:  # fmt: skip
+    """Render SCENE and write the picture."""
+    from .command import Job
+
+    job = Job.like(like) if like else Job()
+    if scene is not None:
+        job.scene = scene
+    if job.scene is None:
+        raise ParameterError("which scene? Name one (`aolab scenes` lists them), a model file, or --like FILE.png")
+    if module is not None and module != job.module:
+        job.module, job.parameters = module, {}
+    job.parameters |= dict(_key_value(text) for text in set_ or [])
+    if occluders is not None:
+        job.parameters["occluders"] = occluders
+    job.place_camera(eye, target, fov)
+    job.choose(size=size, seed=seed, accumulate=accumulate, exposure=exposure, tone_map=tone_map)
+    job.run(output, buffers, stats)
+    print(output)
+
+
+def _key_value(text: str) -> tuple[str, Any]:
+    key, separator, value = text.partition("=")
+    if not separator or not key:
+        raise ParameterError(f"--set {text}: write KEY=VALUE, as in --set radius=0.5")
+    return key.strip().replace("-", "_"), value.strip()
+
+
+@app.command()
+def modules(name: Annotated[str | None, typer.Argument(help="One module only.")] = None, as_json: Json = False) -> None:
+    """List the modules and their parameters: name, type, default, range, unit, and what it does."""
+    from .errors import suggestion
+    from .modules import MODULES
+    from .parameters import describe
+
+    if name is not None and name not in MODULES:
+        raise ParameterError(f"no module '{name}'{suggestion(name, MODULES)}")
+    chosen = {key: module for key, module in MODULES.items() if name in (None, key)}
+    if as_json:
+        print(json.dumps({key: module.model_json_schema() for key, module in chosen.items()}, indent=2))
+        return
+    for key, module in chosen.items():
+        print(f"{key}: {module.title}\n  {module.paper}")
+        for field in module.model_fields:
+            about = describe(module, field)
+            facts = ", ".join(filter(None, (about["type"], about["range"], about["unit"])))
+            print(f"  {field} = {about['default']}  ({facts})\n      {about['description']}")
+
+
+@app.command()
+def scenes(as_json: Json = False) -> None:
+    """List the scenes, their parameters and defaults."""
+    from .loading import describe_scene, scene_names
+
+    described = [describe_scene(name) for name in scene_names()]
+    if as_json:
+        print(json.dumps({one.name: {"summary": one.summary, "parameters": one.parameters} for one in described}))
+        return
+    for one in described:
+        parameters = "&".join(f"{key}={value}" for key, value in one.parameters.items())
+        print(f"{one.name}{'?' if parameters else ''}{parameters}\n  {one.summary}")
+
+
+@app.command()
+def doctor(as_json: Json = False) -> None:
+    """Say what can render here: renderer, versions, devices, extras, and the fix for what is missing."""
+    from .doctor import examine, report
+
+    findings = examine()
+    print(json.dumps(findings, indent=2) if as_json else report(findings))
+    if not findings["renders"]:
+        raise typer.Exit(1)
+
+
+@app.command()
+def bench(
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "1280x720",
+    scene: Annotated[str, typer.Option(help="What to draw.")] = "boxes",
+    frames: Annotated[int, typer.Option(min=3, help="How often each measurement is repeated.")] = 15,
+    scaling: Annotated[bool, typer.Option("--scaling", help="How cost grows with pixels, taps and triangles.")] = False,
+    start: Annotated[
+        bool, typer.Option("--start", help="Import, and process start to saved picture at 640x360.")
+    ] = False,
+    as_json: Json = False,
+) -> None:
+    """Measure: per pass, median and spread over repeated frames; the whole frame; Python's share; the bare loop."""
+    from . import bench as measure
+    from .command import parse_size
+
+    if scaling:
+        result = measure.scaling(parse_size(size), frames)
+    elif start:
+        result = measure.start_up(frames)
+    else:
+        result = measure.frames(scene, parse_size(size), frames)
+    print(json.dumps(result, indent=2) if as_json else measure.table(result))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,141 @@
+"""One render as the shell asks for it: from words to a frame, and to files."""
+
+import json
+import warnings
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any, Self
+
+
+from .camera import Camera, Vec3
+from .errors import FileError, Notice, ParameterError
+from .frame import Frame
+from .gl.texture import Size
+from .lab import DEFAULT_SIZE, Lab
+from .metadata import read_png
+from .modules import MODULES, Module, find
+from .output import check_writable, replacing
+from .scene import Scene
+
+
+@dataclass
+class Job:
+    """What to render and how; `parameters` may still be text, as `--set` gives it."""
+
+    scene: str | None = None
+    module: str = "ssao"
+    parameters: dict[str, Any] = field(default_factory=dict)
+    camera: Camera | None = None
+    eye: Vec3 | None = None
+    target: Vec3 | None = None
+    fov: float | None = None
+    size: Size = DEFAULT_SIZE
+    seed: int = 0
+    accumulate: int = 1
+    exposure: float = 1.0
+    tone_map: Any = "filmic"
+
+    @classmethod
+    def like(cls, picture: Path) -> Self:
+        """The job that made this picture. Raises `FileError` where the picture does not say."""
+        info = read_png(picture)
+        try:
+            return cls(
+                scene=info["scene"],
+                module=info["module"],
+                parameters=info["parameters"],
+                camera=Camera(**info["camera"]),
+                size=tuple(info["size"]),
+                seed=info["seed"],
+                accumulate=info["accumulate"],
+                exposure=info["exposure"],
+                tone_map=info["tone_map"],
+            )
+        except (KeyError, TypeError) as error:
+            raise FileError(f"{picture}: its aolab metadata is incomplete: {error}") from error
+
+    def place_camera(self, eye: str | None, target: str | None, fov: float | None) -> None:
+        """Take the camera's words; what is not said stays as the picture's or the scene's camera has it."""
+        self.eye = None if eye is None else _vector("--eye", eye)
+        self.target = None if target is None else _vector("--target", target)
+        self.fov = fov
+
+    def choose(self, *, size: str | None, **values: Any) -> None:
+        """Override what was said; None leaves it."""
+        if size is not None:
+            self.size = parse_size(size)
+        for name, value in values.items():
+            if value is not None:
+                setattr(self, name, value)
+
+    def run(self, output: Path, buffers: Path | None = None, stats: Path | None = None) -> Frame:
+        """Render and write. Everything that can be refused is refused before the work."""
+        if output.suffix.lower() != ".png":
+            raise FileError(f"cannot write {output}: images are written as .png")
+        for path in filter(None, (output, buffers, stats)):
+            check_writable(path)
+        module = typed(self.module, self.parameters)
+        from .loading import load
+
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", Notice)
+            scene = load(self.scene)
+        lab = Lab(self.size)
+        frame = self.render(lab, scene, module)
+        if stats:
+            frame = self.render(lab, scene, module)  # the first one compiled the shaders
+            frame.info["notes"] = [*(str(note.message) for note in caught), *frame.info["notes"]]
+        for note in caught:
+            warnings.warn(note.message, note.category, stacklevel=1)
+        frame.save(output)
+        if buffers:
+            frame.save_buffers(buffers)
+        if stats:
+            with replacing(stats) as file:
+                file.write((json.dumps(frame.stats(), indent=2) + "\n").encode())
+        return frame
+
+    def render(self, lab: Lab, scene: Scene, module: Module) -> Frame:
+        camera = self.camera or scene.camera
+        assert camera is not None  # Scene frames itself
+        changes = {key: getattr(self, key) for key in ("eye", "target", "fov") if getattr(self, key) is not None}
+        return lab.render(
+            scene,
+            module,
+            camera=replace(camera, **changes),
+            seed=self.seed,
+            accumulate=self.accumulate,
+            exposure=self.exposure,
+            tone_map=self.tone_map,
+        )
+
+
+def typed(name: str, parameters: dict[str, Any]) -> Module:
+    """The module with its parameters, text turned into their types."""
+    module = type(find(name, MODULES))
+    values = {}
+    for key, value in parameters.items():
+        if key in module.model_fields and isinstance(value, str):
+            # the JSON reading of a word, where it has one: 16, 0.5, true; pydantic checks it after that
+            try:
+                value = json.loads(value)
+            except json.JSONDecodeError:
+                pass
+        values[key] = value
+    return module(**values)
+
+
+def parse_size(text: str) -> Size:
+    """'1280x720' as (1280, 720). Raises `ParameterError`."""
+    width, separator, height = text.lower().partition("x")
+    if not separator or not width.isdecimal() or not height.isdecimal():
+        raise ParameterError(f"size = '{text}' is not WIDTHxHEIGHT, as in 1280x720")
+    return int(width), int(height)
+
+
+def _vector(name: str, text: str) -> Vec3:
+    try:
+        x, y, z = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ParameterError(f"{name} {text} is not three numbers X,Y,Z") from None
+    return x, y, z

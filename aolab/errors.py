@@ -1,0 +1,44 @@
+"""What can go wrong, by kind. Everything that aolab raises on purpose is an `aolab.Error`."""
+
+import difflib
+from collections.abc import Iterable
+
+
+class Error(Exception):
+    """The root of aolab's exceptions. Its text names the value, the place and the alternatives."""
+
+
+class SceneError(Error, ValueError):
+    """A scene, mesh, material, light, camera or environment that cannot be drawn."""
+
+
+class FileError(Error, OSError):
+    """A file that is missing, unreadable, corrupt, refused, or cannot be written."""
+
+
+class ParameterError(Error, ValueError):
+    """An unknown module, parameter, buffer or option, or a value out of its range."""
+
+
+class ShaderError(Error):
+    """A shader that cannot be assembled or compiled; names `glsl/FILE:LINE`."""
+
+
+class ContextError(Error, RuntimeError):
+    """No OpenGL context, or one used from another thread or process."""
+
+
+class GpuMemoryError(Error, MemoryError):
+    """The driver could not provide the memory for a texture or buffer."""
+
+
+class Notice(UserWarning):
+    """Something was repaired or left out, and the result is still usable. The shell prints it as a note."""
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """The tail of an error about an unknown name: the nearest known one, or all of them."""
+    names = sorted(known)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
+    listed = ", ".join(names) if names else "none"
+    return f"; did you mean '{close[0]}'? (known: {listed})" if close else f"; known: {listed}"

@@ -1,0 +1,135 @@
+"""The one OpenGL context of this process: made when first needed, used by the thread that made it, released on exit."""
+
+import atexit
+import ctypes
+import ctypes.util
+import os
+import sys
+import threading
+from dataclasses import dataclass
+
+import moderngl
+
+from ..errors import ContextError
+
+REQUIRED = 330  # OpenGL 3.3 core: what every course machine has (macOS stops at 4.1)
+_SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "SwiftShader", "Microsoft Basic Render")
+
+
+@dataclass
+class _State:
+    context: moderngl.Context | None = None
+    thread: int = 0
+    process: int = 0
+
+
+_state = _State()
+
+
+def get() -> moderngl.Context:
+    """The context of this process. Raises `ContextError` from another thread or a forked child, or if GL is missing."""
+    if _state.context is None:
+        _state.context = _create()
+        _state.thread, _state.process = threading.get_ident(), os.getpid()
+        atexit.register(release)
+    elif os.getpid() != _state.process:
+        raise ContextError(
+            f"this process ({os.getpid()}) was forked from {_state.process}, which holds the OpenGL context, and a context "
+            "does not survive a fork; start workers with multiprocessing.get_context('spawn')"
+        )
+    elif threading.get_ident() != _state.thread:
+        raise ContextError(
+            "aolab's OpenGL context belongs to the thread that rendered first; render and read buffers in that thread, "
+            "or use a worker process (multiprocessing.get_context('spawn')) for each parallel render"
+        )
+    return _state.context
+
+
+def release() -> None:
+    """Free the context; the next use makes a new one. Everything made with the old one is void."""
+    if _state.context is not None and os.getpid() == _state.process and threading.get_ident() == _state.thread:
+        _state.context.release()
+        _state.context = None
+        atexit.unregister(release)
+
+
+def renderer() -> str:
+    """The driver's own name for what draws, for example 'llvmpipe (LLVM 15.0.6, 256 bits)'."""
+    return get().info["GL_RENDERER"]
+
+
+def is_software() -> bool:
+    """Whether the CPU draws: there GPU time queries mean nothing, and time is wall clock around `finish()`."""
+    return any(name in renderer() for name in _SOFTWARE_RENDERERS)
+
+
+def devices() -> list[str]:
+    """The EGL devices of this machine, in the order of `AOLAB_DEVICE`; empty where EGL cannot list them."""
+    if not sys.platform.startswith("linux"):
+        return []
+    library = ctypes.util.find_library("EGL") or "libEGL.so.1"
+    try:
+        egl = ctypes.CDLL(library)
+    except OSError:
+        return []
+    egl.eglGetProcAddress.restype = ctypes.c_void_p
+    query_devices = egl.eglGetProcAddress(b"eglQueryDevicesEXT")
+    query_string = egl.eglGetProcAddress(b"eglQueryDeviceStringEXT")
+    if not query_devices or not query_string:
+        return []
+    handles, count = (ctypes.c_void_p * 32)(), ctypes.c_int()
+    devices_of = ctypes.CFUNCTYPE(ctypes.c_uint, ctypes.c_int, ctypes.c_void_p, ctypes.c_void_p)(query_devices)
+    if not devices_of(32, handles, ctypes.byref(count)):
+        return []
+    string_of = ctypes.CFUNCTYPE(ctypes.c_char_p, ctypes.c_void_p, ctypes.c_int)(query_string)
+    egl_extensions, egl_drm_device_file = 0x3055, 0x3233  # EGL_EXTENSIONS, EGL_DRM_DEVICE_FILE_EXT
+    names = []
+    for handle in handles[: count.value]:
+        extensions = (string_of(handle, egl_extensions) or b"").decode()
+        if "EGL_MESA_device_software" in extensions:
+            names.append("software")
+        elif "EGL_EXT_device_drm" in extensions:
+            names.append(f"hardware {(string_of(handle, egl_drm_device_file) or b'').decode()}".rstrip())
+        else:
+            names.append("hardware")
+    return names
+
+
+def _create() -> moderngl.Context:
+    if not sys.platform.startswith("linux"):
+        try:
+            return _checked(moderngl.create_context(standalone=True, require=REQUIRED))
+        except Exception as error:
+            raise ContextError(f"no OpenGL {REQUIRED / 100:.1f} context: {error}; see `aolab doctor`") from error
+    reasons = []
+    for index in _preferred_devices():
+        try:
+            return _checked(
+                moderngl.create_context(standalone=True, require=REQUIRED, backend="egl", device_index=index)
+            )
+        except Exception as error:
+            reasons.append(f"device {index}: {error}")
+    raise ContextError(
+        f"no OpenGL {REQUIRED / 100:.1f} context through EGL ({'; '.join(reasons)}); `aolab doctor` names the remedy"
+    )
+
+
+def _preferred_devices() -> list[int]:
+    """Device indices to try: the one of `AOLAB_DEVICE`, else hardware first."""
+    listed = devices()
+    if wanted := os.environ.get("AOLAB_DEVICE"):
+        if not wanted.isdigit() or (listed and int(wanted) >= len(listed)):
+            choices = ", ".join(f"{i}: {name}" for i, name in enumerate(listed)) or "0"
+            raise ContextError(f"AOLAB_DEVICE = '{wanted}' is not a device of this machine ({choices})")
+        return [int(wanted)]
+    return sorted(range(max(len(listed), 1)), key=lambda index: bool(listed) and listed[index] == "software")
+
+
+def _checked(context: moderngl.Context) -> moderngl.Context:
+    context.gc_mode = "context_gc"  # objects that die in any thread are freed by `collect()` in this one
+    return context
+
+
+def collect() -> None:
+    """Free the GL objects that Python has let go of."""
+    get().gc()

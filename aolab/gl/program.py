@@ -1,0 +1,140 @@
+"""Programs: compiled once for each set of constants, kept, and compiled anew when a file of theirs changes."""
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import moderngl
+
+from ..errors import ShaderError, suggestion
+from . import context
+from .source import Constant, Source, assemble
+
+FULLSCREEN = "pipeline/fullscreen.vert"
+
+
+@dataclass
+class Program:
+    """A linked program with its uniforms by name; `files` are the sources it was made of, with their time stamps."""
+
+    gl: moderngl.Program
+    name: str
+    request: "Request"
+    files: dict[Path, int]
+    constants: set[str]
+    uniforms: dict[str, moderngl.Uniform] = field(init=False)
+    samplers: list[str] = field(init=False)
+    fullscreen: moderngl.VertexArray | None = None
+
+    def __post_init__(self) -> None:
+        members = {name: self.gl[name] for name in self.gl}
+        self.uniforms = {name: member for name, member in members.items() if isinstance(member, moderngl.Uniform)}
+        self.samplers = [name for name, uniform in self.uniforms.items() if uniform.gl_type in _SAMPLERS]
+
+    def set(self, values: Mapping[str, object]) -> None:
+        """Set every uniform that is not a sampler from `values`; one that nothing gives is an error."""
+        for name, uniform in self.uniforms.items():
+            if uniform.gl_type in _SAMPLERS:
+                continue
+            if name not in values:
+                raise ShaderError(f"{self.name}: uniform '{name}' is given by nothing{suggestion(name, values)}")
+            value = values[name]
+            if isinstance(value, bytes):
+                # GLSL drops the unused tail of an array; so do we
+                uniform.write(value[: uniform.array_length * uniform.dimension * 4])
+            else:
+                uniform.value = value
+
+    def changed(self) -> bool:
+        """Whether a file of this program was written since it was compiled."""
+        return any(_stamp(path) != stamp for path, stamp in self.files.items())
+
+
+# GL_SAMPLER_2D, _3D, _CUBE, _2D_SHADOW, _2D_ARRAY, _2D_ARRAY_SHADOW, GL_INT_SAMPLER_2D, GL_UNSIGNED_INT_SAMPLER_2D, _2D_ARRAY
+_SAMPLERS = {0x8B5E, 0x8B5F, 0x8B60, 0x8B62, 0x8DC1, 0x8DC4, 0x8DCA, 0x8DD2, 0x8DD7}
+
+
+def _stamp(path: Path) -> int:
+    try:
+        return os.stat(path).st_mtime_ns
+    except FileNotFoundError:
+        return 0  # an editor between delete and rename; the next look will find it
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a program is made of. `constants` are on offer: a shader takes those that it declares."""
+
+    vertex: str
+    fragment: str
+    constants: Mapping[str, Constant]
+    aliases: Mapping[str, str]
+
+    @property
+    def sources(self) -> tuple[object, ...]:
+        return self.vertex, self.fragment, tuple(sorted(self.aliases.items()))
+
+
+class Programs:
+    """The programs of a Lab, by their sources and by the constants that these declare."""
+
+    def __init__(self) -> None:
+        self._declared: dict[tuple[object, ...], frozenset[str]] = {}
+        self._programs: dict[tuple[object, ...], Program] = {}
+        self.generation = 0  # grows with every reload
+
+    def get(
+        self,
+        fragment: str,
+        constants: Mapping[str, Constant] | None = None,
+        aliases: Mapping[str, str] | None = None,
+        vertex: str = FULLSCREEN,
+    ) -> Program:
+        """The program for these sources, compiled when first asked for. Raises `ShaderError`."""
+        request = Request(vertex, fragment, constants or {}, aliases or {})
+        if request.sources not in self._declared:
+            return self._keep(_compile(request))
+        key = self._key(request)
+        return self._programs[key] if key in self._programs else self._keep(_compile(request))
+
+    def reload(self, only_changed: bool = False) -> list[str]:
+        """Compile again what changed (or everything); returns the names. On `ShaderError` the last good programs stay."""
+        stale = {key: program for key, program in self._programs.items() if not only_changed or program.changed()}
+        fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
+        for key in stale:
+            del self._programs[key]
+        for program in fresh:
+            self._keep(program)
+        self.generation += bool(fresh)
+        return sorted({program.name for program in fresh})
+
+    def _key(self, request: Request) -> tuple[object, ...]:
+        declared = self._declared[request.sources]
+        used = sorted((name, value) for name, value in request.constants.items() if name in declared)
+        return *request.sources, *used
+
+    def _keep(self, program: Program) -> Program:
+        self._declared[program.request.sources] = frozenset(program.constants)
+        self._programs[self._key(program.request)] = program
+        return program
+
+
+def _compile(request: Request) -> Program:
+    vertex = assemble(request.vertex, request.constants, request.aliases)
+    fragment = assemble(request.fragment, request.constants, request.aliases)
+    stamps = {path: _stamp(path) for path in vertex.files | fragment.files}
+    try:
+        linked = context.get().program(vertex_shader=vertex.text, fragment_shader=fragment.text)
+    except moderngl.Error as error:
+        raise ShaderError(_explain(str(error), vertex, fragment)) from None
+    return Program(linked, fragment.name, request, stamps, vertex.constants | fragment.constants)
+
+
+def _explain(message: str, vertex: Source, fragment: Source) -> str:
+    """moderngl's report, told in our files and lines."""
+    stage = vertex if "vertex_shader" in message.splitlines()[:4] else fragment
+    report = [line for line in message.splitlines() if line.strip() and set(line.strip()) != {"="}]
+    titles = ("GLSL Compiler failed", "GLSL Linker failed", "vertex_shader", "fragment_shader")
+    detail = "\n".join(line for line in report if line.strip() not in titles)
+    return f"{stage.name} does not compile:\n{stage.locate(detail)}"

@@ -1,0 +1,131 @@
+"""Shader sources: `#include`, injected constants, and a map from the compiler's line numbers back to our files."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .. import paths
+from ..errors import ShaderError, suggestion
+
+VERSION = "#version 330 core"
+_INCLUDE = re.compile(r'^\s*#\s*include\b\s*(?:"([^"]+)")?')
+_CONSTANT = re.compile(r"^(\s*const\s+(int|float|bool|uint)\s+(\w+)\s*);(.*)$")
+_CONDITION = re.compile(r"^\s*#\s*(?:if|elif)\b(.*)$")
+_DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
+
+Constant = bool | int | float
+
+
+@dataclass
+class Source:
+    """GLSL ready for the compiler. `lines[i]` is (file, line number) of line i + 1 of `text`."""
+
+    name: str
+    text: str
+    lines: list[tuple[str, int]]
+    files: set[Path] = field(default_factory=set)
+    constants: set[str] = field(default_factory=set)
+
+    def locate(self, message: str) -> str:
+        """A driver's error message with `glsl/FILE:LINE` and the line itself in place of the driver's own count."""
+
+        def ours(match: re.Match[str]) -> str:
+            number = int(match["line"] or match["nvidia"])
+            if not 1 <= number <= len(self.lines):
+                return match[0]
+            file, line = self.lines[number - 1]
+            return f"{file}:{line}: {match['rest'].strip()}\n    {self.text.splitlines()[number - 1].strip()}"
+
+        # Mesa "0:12(5): error: ...", Apple and AMD "ERROR: 0:12: ...", NVIDIA "0(12) : error ..."
+        pattern = re.compile(
+            r"^(?:ERROR:\s*)?\d+(?::(?P<line>\d+)(?:\(\d+\))?|\((?P<nvidia>\d+)\))\s*:\s*(?P<rest>.*)$"
+        )
+        found = [pattern.sub(ours, line) for line in message.splitlines()]
+        return "\n".join(line for line in found if line.strip())
+
+
+def assemble(
+    shader: str, constants: Mapping[str, Constant] | None = None, aliases: Mapping[str, str] | None = None
+) -> Source:
+    """Resolve a shader's includes and fill in its constants.
+
+    `shader` is a file under glsl/ ("ssao.frag") or GLSL text (anything with a line break). A line
+    `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the file
+    that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a constant that is not given.
+    """
+    builder = _Builder(dict(constants or {}), dict(aliases or {}))
+    is_text = "\n" in shader
+    builder.emit(VERSION, "glsl", 0)
+    if is_text:
+        builder.add("<inline>", shader, [])
+    else:
+        builder.include(shader, [], f"shader '{shader}'")
+    name = "<inline>" if is_text else f"glsl/{shader}"
+    return Source(name, "\n".join(builder.text) + "\n", builder.lines, builder.files, builder.used)
+
+
+class _Builder:
+    def __init__(self, constants: dict[str, Constant], aliases: dict[str, str]) -> None:
+        self.constants, self.aliases = constants, aliases
+        self.text: list[str] = []
+        self.lines: list[tuple[str, int]] = []
+        self.files: set[Path] = set()
+        self.used: set[str] = set()
+        self.defined: set[str] = set()
+
+    def emit(self, text: str, file: str, line: int) -> None:
+        self.text.append(text)
+        self.lines.append((file, line))
+
+    def include(self, name: str, chain: list[str], where: str) -> None:
+        name = self.aliases.get(name, name)
+        if name in chain:
+            raise ShaderError(f"{where}: include cycle: {' -> '.join([*chain[chain.index(name) :], name])}")
+        root = paths.glsl()
+        path = (root / name).resolve()
+        if not path.is_relative_to(root.resolve()) or not path.is_file():
+            known = [str(p.relative_to(root)) for p in root.rglob("*") if p.suffix in (".glsl", ".frag", ".vert")]
+            raise ShaderError(f"{where}: no file 'glsl/{name}'{suggestion(name, [*known, *self.aliases])}")
+        if path in self.files:
+            return  # once only
+        self.files.add(path)
+        self.add(f"glsl/{name}", path.read_text(encoding="utf-8"), [*chain, name])
+
+    def add(self, file: str, text: str, chain: list[str]) -> None:
+        for number, line in enumerate(text.splitlines(), start=1):
+            where = f"{file}:{number}"
+            if line.lstrip().startswith("#version"):
+                raise ShaderError(f"{where}: leave out #version; aolab writes '{VERSION}'")
+            if match := _INCLUDE.match(line):
+                if not match[1]:
+                    raise ShaderError(f'{where}: write #include "FILE", a path under glsl/, not: {line.strip()}')
+                self.include(match[1], chain, where)
+            elif match := _CONSTANT.match(line):
+                self.emit(f"{match[1]} = {self.literal(match[2], match[3], where)};{match[4]}", file, number)
+            else:
+                if match := _DEFINE.match(line):
+                    self.defined.add(match[1])
+                if match := _CONDITION.match(line):
+                    self.refuse_unknown(match[1], where)
+                self.emit(line, file, number)
+
+    def literal(self, kind: str, name: str, where: str) -> str:
+        if name not in self.constants:
+            raise ShaderError(f"{where}: constant '{name}' is not given{suggestion(name, self.constants)}")
+        self.used.add(name)
+        value = self.constants[name]
+        if kind == "bool":
+            return "true" if value else "false"
+        if kind == "float":
+            return repr(float(value))
+        if float(value) != int(value):
+            raise ShaderError(f"{where}: constant '{name}' is {kind}, but was given {value}")
+        return f"{int(value)}{'u' if kind == 'uint' else ''}"
+
+    def refuse_unknown(self, condition: str, where: str) -> None:
+        """The preprocessor takes an unknown name for 0 without a word; we do not."""
+        condition = re.sub(r"//.*|defined\s*\(?\s*\w+\s*\)?", "", condition)
+        for name in re.findall(r"[A-Za-z_]\w*", condition):
+            if name not in self.defined and not name.startswith(("GL_", "__")):
+                raise ShaderError(f"{where}: '{name}' is not defined{suggestion(name, self.defined)}")

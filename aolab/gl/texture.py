@@ -1,0 +1,103 @@
+"""Textures that passes draw into: made by format name, lent from a pool, read back the right side up."""
+
+import math
+from collections import defaultdict
+
+import moderngl
+import numpy as np
+
+from ..errors import GpuMemoryError, ParameterError, suggestion
+from . import context
+
+# name: (components, moderngl dtype); "f2" and "f4" are half and single floats, "f1" is normalised bytes
+FORMATS = {
+    "R8": (1, "f1"),
+    "RGBA8": (4, "f1"),
+    "R16F": (1, "f2"),
+    "RG16F": (2, "f2"),
+    "RGBA16F": (4, "f2"),
+    "R32F": (1, "f4"),
+    "RGBA32F": (4, "f4"),
+}
+_BYTES = {"f1": 1, "f2": 2, "f4": 4}
+Size = tuple[int, int]
+
+
+def check_size(size: Size) -> Size:
+    """(width, height) as the driver can draw it; raises `ParameterError` with the driver's limit."""
+    width, height = (int(value) for value in size)
+    limit = context.get().info["GL_MAX_TEXTURE_SIZE"]
+    if not (1 <= width <= limit and 1 <= height <= limit):
+        raise ParameterError(f"size = {width}x{height}: each side must be from 1 to {limit} pixels on this driver")
+    return width, height
+
+
+def make(size: Size, format: str, data: bytes | None = None) -> moderngl.Texture:
+    """A nearest-filtered, edge-clamped texture. Raises `GpuMemoryError` where the driver has no room."""
+    if format not in FORMATS:
+        raise ParameterError(f"texture format '{format}' is unknown{suggestion(format, FORMATS)}")
+    components, dtype = FORMATS[format]
+    gl = context.get()
+    needed = math.prod(size) * components * _BYTES[dtype]
+    gl.clear_errors() if hasattr(gl, "clear_errors") else gl.error
+    try:
+        texture = gl.texture(size, components, data, dtype=dtype)
+    except moderngl.Error as error:
+        raise GpuMemoryError(f"no {needed / 1e6:.0f} MB for a {size[0]}x{size[1]} {format} texture: {error}") from error
+    refuse_exhaustion(f"a {size[0]}x{size[1]} {format} texture of {needed / 1e6:.0f} MB")
+    texture.filter = (moderngl.NEAREST, moderngl.NEAREST)
+    texture.repeat_x = texture.repeat_y = False
+    return texture
+
+
+def refuse_exhaustion(what: str) -> None:
+    """Raise `GpuMemoryError` if the driver has said that memory ran out: otherwise the picture would be black."""
+    error = context.get().error
+    if error == "GL_OUT_OF_MEMORY":
+        raise GpuMemoryError(f"the driver ran out of memory for {what}; use a smaller size, or fewer kept frames")
+    if error != "GL_NO_ERROR":
+        raise GpuMemoryError(f"the driver refused {what}: {error}")
+
+
+class Pool:
+    """Textures and their framebuffers, used again when nobody holds them."""
+
+    def __init__(self) -> None:
+        self._free: dict[tuple[Size, str], list[moderngl.Texture]] = defaultdict(list)
+        self._framebuffers: dict[tuple[int, ...], moderngl.Framebuffer] = {}
+
+    def take(self, size: Size, format: str) -> moderngl.Texture:
+        """A texture of unspecified content."""
+        free = self._free[size, format]
+        return free.pop() if free else make(size, format)
+
+    def give_back(self, lent: list[tuple[Size, str, moderngl.Texture]]) -> None:
+        """Textures that are no longer held; touches no GL, so that any thread's garbage collector may call it."""
+        for size, format, texture in lent:
+            self._free[size, format].append(texture)
+
+    def framebuffer(
+        self, textures: list[moderngl.Texture], depth: moderngl.Texture | None = None
+    ) -> moderngl.Framebuffer:
+        """A framebuffer over these textures, kept."""
+        key = (*(texture.glo for texture in textures), -1 if depth is None else depth.glo)
+        if key not in self._framebuffers:
+            self._framebuffers[key] = context.get().framebuffer(textures, depth)
+        return self._framebuffers[key]
+
+    def trim(self, size: Size) -> None:
+        """Free what nobody holds and is not of `size`: after a change of resolution."""
+        for key in [key for key in self._free if key[0] != size]:
+            gone = {texture.glo for texture in self._free.pop(key)}
+            for names in [names for names in self._framebuffers if gone & set(names)]:
+                del self._framebuffers[names]
+
+
+def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:
+    """(H, W) or (H, W, channels), top row first; float32, or uint8 for byte formats."""
+    context.get()  # refuses the wrong thread
+    dtype = {"f1": np.uint8, "f2": np.float16, "f4": np.float32}[texture.dtype]
+    pixels = np.frombuffer(texture.read(alignment=1), dtype).reshape(texture.height, texture.width, -1)[::-1]
+    pixels = pixels[..., : channels or texture.components]
+    pixels = pixels[..., 0] if pixels.shape[2] == 1 else pixels
+    return np.ascontiguousarray(pixels, np.uint8 if dtype == np.uint8 else np.float32)

@@ -1,0 +1,188 @@
+"""The lab: keeps programs, textures and geometry between frames, and runs the passes of each."""
+
+import warnings
+from dataclasses import asdict
+from time import perf_counter
+from typing import Any
+
+import moderngl
+
+from . import filters, lighting, surfaces
+from .camera import Camera
+from .draw import Buffers, Painter
+from .errors import Notice, ParameterError
+from .frame import Frame, lend
+from .gl import context
+from .gl.geometry import Geometry
+from .gl.program import Programs
+from .gl.texture import Pool, Size, check_size
+from .lighting import Display, EnvironmentMaps, ToneMap
+from .modules import MODULES, Module, find
+from .scene import Scene
+from .shadows import ShadowMaps, draw_shadows
+from .version import __version__
+from .view import View
+
+DEFAULT_SIZE = (1280, 720)
+
+
+class Lab:
+    """Renders scenes with modules. One lab for a session is enough; `aolab.render` keeps one of its own.
+
+    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame.
+    """
+
+    def __init__(self, size: Size = DEFAULT_SIZE, *, watch: bool = False) -> None:
+        self.size = size
+        self.watch = watch
+        context.get()
+        self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
+        self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
+        self._samplers = {"viewZ": surfaces.border_sampler()}
+        self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
+
+    def reload(self) -> list[str]:
+        """Compile the shaders whose files changed; returns their names.
+
+        Raises `ShaderError` for one that does not compile: then the last good programs stay in use.
+        """
+        return self._programs.reload(only_changed=True)
+
+    def render(
+        self,
+        scene: Any,
+        module: str | Module | type[Module] = "ssao",
+        *,
+        camera: Camera | None = None,
+        size: Size | None = None,
+        seed: int = 0,
+        accumulate: int = 1,
+        exposure: float = 1.0,
+        tone_map: ToneMap = "filmic",
+        **parameters: object,
+    ) -> Frame:
+        """Render one frame.
+
+        `scene` is anything that `aolab.load` takes; `module` a name, class or instance; `parameters` are the module's.
+        `camera` defaults to the scene's. `seed` chooses the sample set; `accumulate` averages that many frames with
+        different sets. Raises `ParameterError`, `SceneError`, `ShaderError`, `GpuMemoryError`, `ContextError`.
+        """
+        start = perf_counter()
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", Notice)
+            frame = self._render(
+                _as_scene(scene),
+                find(module, MODULES, **parameters),
+                camera,
+                check_size(size or self.size),
+                _whole("seed", seed, 0),
+                _whole("accumulate", accumulate, 1),
+                _display(exposure, tone_map),
+            )
+        frame.info["notes"] = [str(note.message) for note in caught]
+        frame.info["frame_ms"] = (perf_counter() - start) * 1e3
+        for note in caught:
+            warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
+        return frame
+
+    def _render(
+        self, scene: Scene, module: Module, camera: Camera | None, size: Size, seed: int, frames: int, display: Display
+    ) -> Frame:
+        context.collect()
+        if self.watch:
+            self.reload()
+        camera = camera or scene.camera
+        assert camera is not None  # Scene frames itself
+        module = module.resolved(scene)
+        view = View(camera, size, scene.bounds)
+        painter = Painter(self._programs, self._pool, self._samplers)
+
+        shadows = self._shadow_maps(painter, scene)
+        buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
+        buffers |= self._estimate(painter, module, buffers, view, seed, frames)
+        buffers |= lighting.light(painter, buffers, scene, view, shadows)
+        buffers |= lighting.compose(painter, buffers, self._environments, scene, view, display)
+
+        info = {
+            "aolab": __version__,
+            "renderer": context.renderer(),
+            "scene": scene.source,
+            "module": module.name or type(module).__name__,
+            "parameters": module.model_dump(),
+            "camera": asdict(camera),
+            "size": list(size),
+            "seed": seed,
+            "accumulate": frames,
+            **asdict(display),
+            "triangles": scene.triangles,
+        }
+        return lend(Frame(buffers, painter.timer.result(), info), self._pool, painter.lent)
+
+    def _shadow_maps(self, painter: Painter, scene: Scene) -> ShadowMaps:
+        """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
+        key = (scene.instances, scene.lights, painter.programs.generation)
+        if self._shadows is None or self._shadows[0] != key:
+            self._shadows = key, draw_shadows(painter, self._geometry, scene)
+        return self._shadows[1]
+
+    def _estimate(
+        self, painter: Painter, module: Module, large: Buffers, view: View, seed: int, frames: int
+    ) -> Buffers:
+        """The module's passes, averaged, filtered, and brought to full size; `NAME_raw` is the unfiltered estimate."""
+        small, small_view = large, view
+        if module.scale < 1:
+            small_view = view.scaled(module.scale)
+            small = surfaces.shrink(painter, large, view, small_view)
+        if frames == 1:
+            formats = dict(module.outputs)
+            raw = self._passes(painter, module, small, small_view, seed)
+        else:
+            formats = {name: filters.single_precision(format) for name, format in module.outputs.items()}
+            raw = self._accumulated(painter, module, formats, small, small_view, range(seed, seed + frames))
+        estimate = filters.apply(painter, module.filter, raw, formats, small, small_view)
+        if module.scale < 1:
+            estimate = filters.upsample(painter, estimate, formats, small, small_view, large, view)
+        return {**{f"{name}_raw": texture for name, texture in raw.items()}, **estimate}
+
+    def _accumulated(
+        self, painter: Painter, module: Module, formats: dict[str, str], inputs: Buffers, view: View, seeds: range
+    ) -> Buffers:
+        means = {name: painter.take(view.size, format) for name, format in formats.items()}
+        painter.pool.framebuffer(list(means.values())).clear()
+        for seed in seeds:
+            one = self._passes(painter, module, inputs, view, seed)
+            filters.accumulate(painter, one, means, len(seeds), view)
+            painter.give_back(one)
+        return means
+
+    def _passes(self, painter: Painter, module: Module, inputs: Buffers, view: View, seed: int) -> Buffers:
+        values = module.model_dump()
+        constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
+        uniforms = {**view.uniforms, **values, **module.samples(seed)}
+        aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
+        made: Buffers = {}
+        for step in module.passes():
+            made |= painter.run(step, {**inputs, **made}, uniforms, view.size, constants, aliases)
+        return {name: made[name] for name in module.outputs}
+
+
+def _as_scene(scene: Any) -> Scene:
+    if isinstance(scene, Scene):
+        return scene
+    from .loading import load
+
+    return load(scene)
+
+
+def _whole(name: str, value: int, least: int) -> int:
+    if not isinstance(value, int) or value < least:
+        raise ParameterError(f"{name} = {value!r} is not a whole number from {least} on")
+    return value
+
+
+def _display(exposure: float, tone_map: ToneMap) -> Display:
+    if not 0 < exposure < float("inf"):
+        raise ParameterError(f"exposure = {exposure!r} is not a number above 0")
+    if tone_map not in ("filmic", "linear"):
+        raise ParameterError(f"tone_map = {tone_map!r} is not one of: filmic, linear")
+    return Display(exposure, tone_map)

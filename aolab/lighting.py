@@ -1,0 +1,101 @@
+"""From surfaces and visibility to a picture: direct, ambient, and the sum, tone mapped."""
+
+import weakref
+from dataclasses import dataclass
+from typing import Literal
+
+import moderngl
+import numpy as np
+
+from .draw import Buffers, Painter
+from .environment import HALF_MAX, Environment
+from .gl import context
+from .lights import DirectionalLight, PointLight, SpotLight
+from .passes import Pass
+from .scene import Scene
+from .shadows import ShadowMaps
+from .view import View, matrix_bytes
+
+ToneMap = Literal["filmic", "linear"]
+
+_DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"})
+_AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
+_COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
+
+_KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
+
+
+class EnvironmentMaps:
+    """Environments as textures, kept for as long as the environment lives."""
+
+    def __init__(self) -> None:
+        self._textures: weakref.WeakKeyDictionary[Environment, moderngl.Texture] = weakref.WeakKeyDictionary()
+
+    def of(self, environment: Environment) -> moderngl.Texture:
+        """RGB, half float, first row up (+y): as glsl/lib/environment.glsl reads it."""
+        if environment not in self._textures:
+            height, width = environment.radiance.shape[:2]
+            data = np.ascontiguousarray(np.minimum(environment.radiance, HALF_MAX), np.float16).tobytes()
+            texture = context.get().texture((width, height), 3, data, dtype="f2", alignment=2)
+            texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+            texture.repeat_x, texture.repeat_y = True, False
+            self._textures[environment] = texture
+        return self._textures[environment]
+
+
+@dataclass(frozen=True)
+class Display:
+    """How radiance becomes an image: `exposure` multiplies it; `tone_map` is filmic, or linear (clipped at 1)."""
+
+    exposure: float = 1.0
+    tone_map: ToneMap = "filmic"
+
+
+def light(painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps) -> Buffers:
+    """`direct` and `ambient` radiance; a module that gives its own `ambient` is left alone."""
+    inputs = {**buffers, "shadow_atlas": shadows.atlas}
+    count = len(scene.lights)
+    constants = {"lights": count, "light_slots": max(1, count), "shadow_slots": len(shadows.matrices)}
+    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows)}
+    lit = painter.run(_DIRECT, inputs, uniforms, view.size, constants)
+    if "ambient" not in buffers:
+        assert scene.environment is not None  # Scene fills it in
+        coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
+        lit |= painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
+    return lit
+
+
+def compose(
+    painter: Painter, buffers: Buffers, maps: EnvironmentMaps, scene: Scene, view: View, display: Display
+) -> Buffers:
+    """`radiance` (the sum, over the environment) and `image` (tone mapped sRGB)."""
+    assert scene.environment is not None
+    inputs = {"indirect": buffers["ambient"], **buffers, "environment": maps.of(scene.environment)}
+    constants = {"has_indirect": "indirect" in buffers, "filmic_tone": display.tone_map == "filmic"}
+    return painter.run(_COMPOSE, inputs, {**view.uniforms, "exposure": display.exposure}, view.size, constants)
+
+
+def _light_uniforms(scene: Scene, shadows: ShadowMaps) -> dict[str, bytes]:
+    slots = max(1, len(scene.lights))
+    kind, tile = np.zeros(slots, np.int32), np.full(slots, -1, np.int32)
+    position, direction, color = (np.zeros((slots, 3), np.float32) for _ in range(3))
+    spot_cos = np.zeros((slots, 2), np.float32)
+    for i, one in enumerate(scene.lights):
+        kind[i], tile[i] = _KIND[type(one)], shadows.first_tile[i]
+        color[i] = one.irradiance if isinstance(one, DirectionalLight) else one.intensity
+        if not isinstance(one, DirectionalLight):
+            position[i] = one.position
+        if not isinstance(one, PointLight):
+            direction[i] = np.asarray(one.direction) / np.linalg.norm(one.direction)
+        if isinstance(one, SpotLight):
+            spot_cos[i] = np.cos(np.radians([one.inner, one.outer]))
+    return {
+        "light_kind": kind.tobytes(),
+        "light_tile": tile.tobytes(),
+        "light_position": position.tobytes(),
+        "light_direction": direction.tobytes(),
+        "light_color": color.tobytes(),
+        "light_spot_cos": spot_cos.tobytes(),
+        "shadow_from_world": b"".join(matrix_bytes(matrix) for matrix in shadows.matrices),
+        "shadow_tile": shadows.tiles.astype(np.float32).tobytes(),
+    }

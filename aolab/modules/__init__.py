@@ -1,0 +1,9 @@
+"""The methods: one file each. This table is all the registry there is."""
+
+from .base import Module, find
+from .none import Unoccluded
+from .ssao import SSAO
+
+MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO)}
+
+__all__ = ["MODULES", "SSAO", "Module", "Unoccluded", "find"]

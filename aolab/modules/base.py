@@ -1,0 +1,102 @@
+"""What a module is: parameters, what it gives, and its passes. No GL in here."""
+
+from collections.abc import Mapping
+from typing import Annotated, ClassVar, Literal, Self
+
+from pydantic import Field
+
+from ..errors import ParameterError, suggestion
+from ..parameters import AUTO, Parameters, parameter
+from ..passes import Pass
+from ..scene import Scene
+
+# Common parameters: one meaning everywhere (see "The face of the package" in the design)
+Radius = Annotated[
+    Annotated[float, Field(gt=0)] | Literal["auto"],
+    Field(
+        description="Reach of occlusion; auto takes a share of the scene's size.",
+        json_schema_extra={"unit": "scene units"},
+    ),
+]
+Directions = Annotated[int, Field(ge=1, le=256, description="Directions a pixel (N), one set in each of 4×4 pixels.")]
+Steps = Annotated[int, Field(ge=1, le=64, description="Points along each direction; more of them approach a ray.")]
+Bias = Annotated[
+    float,
+    Field(
+        ge=0,
+        le=1,
+        description="Height over the tangent plane below which nothing blocks.",
+        json_schema_extra={"unit": "radii"},
+    ),
+]
+Falloff = Annotated[
+    float,
+    Field(
+        ge=0,
+        le=1,
+        description="Outer share of the squared radius over which occluders fade out; 0 is a hard edge.",
+    ),
+]
+
+Thickness = Annotated[
+    float,
+    Field(
+        gt=0,
+        le=10,
+        description="Depth behind the visible surface that is taken to be solid: the range check.",
+        json_schema_extra={"unit": "radii"},
+    ),
+]
+
+AUTO_RADIUS_SHARE = 0.1  # of the scene's radius: reaches across furniture, not across the room
+SCALES = (0.125, 1.0)
+
+
+class Module(Parameters):
+    """A method. A subclass states its fields with `parameter(...)`, and these facts:
+
+    `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
+    format). A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    """
+
+    name: ClassVar[str] = ""
+    title: ClassVar[str] = ""
+    paper: ClassVar[str] = ""
+    shader: ClassVar[str] = ""
+    outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
+
+    occluders: Literal["depth"] = parameter("depth", "What is tested for blocking: depth is the camera's one layer.")
+    filter: Literal["none", "box4", "bilateral"] = parameter(
+        "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
+    )
+    scale: float = parameter(
+        1.0,
+        "Resolution of the estimate as a share of the image's, brought up by joint bilateral upsampling.",
+        ge=SCALES[0],
+        le=SCALES[1],
+    )
+
+    def passes(self) -> list[Pass]:
+        """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
+        return [Pass(self.name or type(self).__name__, self.shader, self.outputs)]
+
+    def samples(self, seed: int) -> dict[str, bytes]:
+        """Uniform arrays that depend on the seed; another seed is another sample set."""
+        return {}
+
+    def resolved(self, scene: Scene) -> Self:
+        """The same with every `auto` made a number for this scene."""
+        if getattr(self, "radius", None) == AUTO:
+            return self.replace(radius=AUTO_RADIUS_SHARE * scene.radius)  # type: ignore[return-value]
+        return self
+
+
+def find(module: "str | Module | type[Module]", modules: Mapping[str, type[Module]], **parameters: object) -> Module:
+    """A module by name, class or instance, with these parameters. Raises `ParameterError` for an unknown one."""
+    if isinstance(module, Module):
+        return module.replace(**parameters) if parameters else module  # type: ignore[return-value]
+    if isinstance(module, str):
+        if module not in modules:
+            raise ParameterError(f"no module '{module}'{suggestion(module, modules)}")
+        module = modules[module]
+    return module(**parameters)

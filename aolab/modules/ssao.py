@@ -1,0 +1,31 @@
+"""Screen-space ambient occlusion over the hemisphere."""
+
+from typing import ClassVar
+
+from ..kernels import cosine_hemisphere
+from ..parameters import parameter
+from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
+
+
+class SSAO(Module):
+    """The share of cosine-distributed directions in which the depth buffer blocks nothing within the radius.
+
+    Directions are marched in `steps` points, jittered along the way; with many steps and `accumulate`, this converges
+    to rays of length `radius` against the one layer that the camera sees.
+    """
+
+    name: ClassVar[str] = "ssao"
+    title: ClassVar[str] = "Screen-space ambient occlusion"
+    paper: ClassVar[str] = "Mittring 2007, Finding Next Gen: CryEngine 2; hemisphere form: Filion and McNaughton 2008"
+    shader: ClassVar[str] = "ssao.frag"
+
+    radius: Radius = "auto"
+    directions: Directions = 16
+    steps: Steps = 2
+    bias: Bias = 0.01
+    falloff: Falloff = 0.3
+    thickness: Thickness = 0.8
+    power: float = parameter(1.0, "Contrast: visibility is raised to it; 1 is the physical value.", gt=0, le=8)
+
+    def samples(self, seed: int) -> dict[str, bytes]:
+        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}

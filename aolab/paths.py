@@ -1,0 +1,30 @@
+"""Where the shaders and scenes are: environment variable, then the checkout, then the installed package."""
+
+import os
+from functools import cache
+from pathlib import Path
+
+from .errors import FileError
+
+_PACKAGE = Path(__file__).resolve().parent
+
+
+@cache
+def _find(folder: str, variable: str) -> Path:
+    candidates = [_PACKAGE.parent / folder, _PACKAGE / folder]
+    if override := os.environ.get(variable):
+        candidates = [Path(override).resolve()]
+    for candidate in candidates:
+        if candidate.is_dir():
+            return candidate
+    raise FileError(f"no folder {' or '.join(map(str, candidates))}; set {variable} to the folder that holds {folder}/")
+
+
+def glsl() -> Path:
+    """The folder of the shaders; `AOLAB_GLSL` overrides it."""
+    return _find("glsl", "AOLAB_GLSL")
+
+
+def scenes() -> Path:
+    """The folder of the scenes; `AOLAB_SCENES` overrides it."""
+    return _find("scenes", "AOLAB_SCENES")

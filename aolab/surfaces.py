@@ -1,0 +1,60 @@
+"""Surfaces: what the camera sees, before any light (the G-buffer), and the smaller copy for estimates at low resolution."""
+
+import moderngl
+import numpy as np
+
+from .draw import Buffers, Painter
+from .gl import context
+from .gl.geometry import Geometry
+from .passes import Pass
+from .scene import Scene
+from .view import View, ray_scale_offset
+
+G_BUFFER = {"viewZ": "R32F", "viewNormal": "RGBA16F", "albedo": "RGBA16F"}
+BACKGROUND_Z = -np.inf
+
+_SHRINK = Pass("shrink", "pipeline/shrink.frag", G_BUFFER)
+
+
+class DepthTargets:
+    """Depth buffers by size: scratch space that no frame keeps."""
+
+    def __init__(self) -> None:
+        self._depth: tuple[tuple[int, int], moderngl.Renderbuffer] | None = None
+
+    def of(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
+        if self._depth is None or self._depth[0] != size:
+            self._depth = size, context.get().depth_renderbuffer(size)
+        return self._depth[1]
+
+
+def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View) -> Buffers:
+    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F)."""
+    gl = context.get()
+    buffers = {name: painter.take(view.size, format) for name, format in G_BUFFER.items()}
+    program = painter.programs.get("pipeline/gbuffer.frag", vertex="pipeline/gbuffer.vert")
+    # set a mesh at a time, by Geometry.draw
+    program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
+    painter.bind_unit(program, "base_texture", 0)
+    framebuffer = painter.pool.framebuffer(list(buffers.values()), depth.of(view.size))
+    with painter.timer.measure("g_buffer"):
+        framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+        painter.pool.framebuffer([buffers["viewZ"]]).clear(red=BACKGROUND_Z)
+        framebuffer.use()
+        gl.enable_only(moderngl.DEPTH_TEST)
+        geometry.draw(scene, program, materials=True)
+        gl.enable_only(moderngl.NOTHING)
+    return buffers
+
+
+def shrink(painter: Painter, buffers: Buffers, view: View, small: View) -> Buffers:
+    """The G-buffer at the size of `small`, from the one at the size of `view`."""
+    uniforms = {**view.uniforms, "small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
+    return painter.run(_SHRINK, buffers, uniforms, small.size)
+
+
+def border_sampler() -> moderngl.Sampler:
+    """Outside of the screen nothing is known, and nothing blocks: viewZ is the background's there."""
+    sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=(moderngl.NEAREST, moderngl.NEAREST))
+    sampler.border_color = (BACKGROUND_Z, 0.0, 0.0, 0.0)
+    return sampler

@@ -1,0 +1,5 @@
+"""The ray-traced truth: what every method is measured against, pixel by pixel."""
+
+from .reference import reference
+
+__all__ = ["reference"]

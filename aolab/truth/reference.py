@@ -1,0 +1,152 @@
+"""`aolab.reference`: the same buffers as a render's, by rays against all triangles."""
+
+from collections.abc import Iterable
+from dataclasses import asdict
+from time import perf_counter
+from typing import Any, get_args
+
+import numpy as np
+
+from ..api import shared_lab
+from ..camera import Camera
+from ..errors import ParameterError, suggestion
+from ..frame import Frame
+from ..gl import context
+from ..gl.texture import Size
+from ..loading import load
+from ..modules import MODULES, Module
+from ..modules.base import find
+from ..scene import Scene
+from ..version import __version__
+from ..view import View
+from . import cache as disk
+from .casters import Engine
+from .hemisphere import strata
+from .integrals import Measure, Setting
+from .points import surface_points
+from .tracing import BUFFERS, trace
+from .world import World
+
+DEFAULT_SIZE = (640, 360)
+DEFAULT_BUFFERS = ("visibility", "ambient", "bent_normal", "indirect", "standard_error")
+
+
+def reference(
+    scene: Any,
+    *,
+    size: Size = DEFAULT_SIZE,
+    camera: Camera | None = None,
+    rays: int = 256,
+    radius: float | None = None,
+    falloff: float = 0.0,
+    like: str | Module | type[Module] | None = None,
+    buffers: Iterable[str] = DEFAULT_BUFFERS,
+    measure: Measure = "sqrt",
+    bounces: int = 8,
+    seed: int = 0,
+    engine: Engine = "auto",
+    cache: bool = True,
+    progress: bool | None = None,
+) -> Frame:
+    """Ray-traced truth for `scene`, at the surface points of aolab's own G-buffer: pixels correspond one to one.
+
+    `rays`, even, are cast from each pixel's centre, stratified, with density cosθ/π around the G-buffer's normal. They
+    start off the surface (`World.lift`, `surface_points`); one that dips below its triangle, as shading normals allow,
+    meets that triangle and is blocked. All triangles block, from both sides; holes of cut-out textures do not.
+
+    `radius` (scene units; None is unlimited) and `falloff` mean what they mean for the modules: a hit at distance d
+    blocks by clamp((1 - d²/radius²) / falloff, 0, 1). `like` takes both from a module instead.
+
+    `buffers` chooses what is computed, and what it costs. Besides viewZ, viewNormal and albedo, which are the render's:
+
+    - `visibility`: mean of the openness 1 - blocked; `standard_error`: its standard deviation, from pairs of
+      independent rays in each stratum (`strata`);
+    - `ambient`: albedo/π × the environment's radiance in the open directions, times their openness;
+    - `indirect`: albedo/π × the light that blockers reflect, as far as they block: diffuse, lit by the lights, with
+      shadows: one bounce;
+    - `bent_normal`: Σ V ω / Σ V over the same rays, world space; its length is 2/3 where all is open;
+    - `sh0` .. `sh3`: c_i = ∫ V y_i cosθ dω, four a buffer, the basis of `aolab.spherical_harmonics`, world space;
+    - `obscurance`: O = (1/π) ∫ μ(d) cosθ dω with the `measure` μ (classical, linear, sqrt, exponential with
+      σ = 1/radius); `transfer`: W = O / (1 - (1/π) ∫ (1 - μ) a cosθ dω), a the blockers' albedo (Umenhoffer, Tóth and
+      Szirmay-Kalos 2009, eq. 6); `transfer_multibounce`: the same by path tracing under a sky of 1, at most `bounces`
+      reflections (what is still enclosed then is black), where a segment longer than the radius sees the sky;
+    - `direct`: the lights, with hard shadows; `radiance` and `image`: direct + ambient + indirect, shown as a render is.
+
+    `engine`: embree, numpy (tiny scenes), or auto. Results are kept on disk (`AOLAB_CACHE`, else the platform's cache
+    folder) by their content, unless `cache` is False. `progress` shows a bar; None shows it on a terminal.
+    Raises `ParameterError`, and what `aolab.load` and `aolab.render` raise.
+    """
+    start = perf_counter()
+    scene = load(scene)
+    radius, falloff = _reach(scene, radius, falloff, like)
+    wanted = _checked(buffers, rays, measure, bounces, radius)
+    surfaces = shared_lab().render(scene, "none", size=size, camera=camera)
+    camera = camera or scene.camera
+    assert camera is not None  # Scene frames itself
+    view = View(camera, surfaces.size, scene.bounds)
+
+    settings = {
+        "rays": rays,
+        "radius": None if np.isinf(radius) else radius,
+        "falloff": falloff,
+        "measure": measure,
+        "bounces": bounces,
+        "engine": engine,
+    }
+    info = {
+        "aolab": __version__,
+        "renderer": context.renderer(),
+        "scene": scene.source,
+        "module": "reference",
+        "parameters": settings,
+        "camera": asdict(camera),
+        "size": list(view.size),
+        "seed": seed,
+        "triangles": scene.triangles,
+        "notes": [],
+    }
+    made_of = {name: info[name] for name in ("aolab", "renderer", "camera", "size", "seed")}
+    name = disk.key(scene, buffers=wanted, **settings, **made_of) if cache else ""
+    arrays = disk.load(name) if cache else None
+    if arrays is None:
+        assert scene.environment is not None  # Scene fills it in
+        world = World(scene, engine)
+        setting = Setting(world, scene.environment, scene.lights, radius, falloff, measure, bounces)
+        arrays = trace(setting, surface_points(surfaces, scene, view, world), view, rays, seed, wanted, progress)
+        if cache:
+            disk.store(name, arrays)
+    info["frame_ms"] = (perf_counter() - start) * 1e3
+    own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
+    return Frame({**own, **arrays}, {"reference": info["frame_ms"]}, info)
+
+
+def _reach(
+    scene: Scene, radius: float | None, falloff: float, like: str | Module | type[Module] | None
+) -> tuple[float, float]:
+    """Radius (infinite for None) and falloff, from the arguments or from the module `like`."""
+    if like is not None:
+        if radius is not None or falloff:
+            raise ParameterError("radius and falloff come from `like`; give either those or `like`")
+        module = find(like, MODULES).resolved(scene)
+        radius, falloff = getattr(module, "radius", None), getattr(module, "falloff", 0.0)
+    if radius is not None and not radius > 0:
+        raise ParameterError(f"radius = {radius!r} is not a length above 0 (None is unlimited)")
+    if not 0 <= falloff <= 1:
+        raise ParameterError(f"falloff = {falloff!r} is outside [0, 1]")
+    return (np.inf if radius is None else float(radius)), float(falloff)
+
+
+def _checked(buffers: Iterable[str], rays: int, measure: str, bounces: int, radius: float) -> list[str]:
+    """The wanted buffers in the table's order, after all arguments have been checked, before any work is done."""
+    wanted = [buffers] if isinstance(buffers, str) else list(buffers)
+    for name in wanted:
+        if name not in BUFFERS:
+            raise ParameterError(f"the reference has no buffer '{name}'{suggestion(name, BUFFERS)}")
+    next(strata(rays))
+    if measure not in get_args(Measure):
+        raise ParameterError(f"measure = {measure!r} is unknown{suggestion(str(measure), get_args(Measure))}")
+    if not isinstance(bounces, int) or bounces < 0:
+        raise ParameterError(f"bounces = {bounces!r} is not a whole number from 0 on")
+    if np.isinf(radius) and measure != "classical" and {"obscurance", "transfer"} & set(wanted):
+        raise ParameterError(f"measure = '{measure}' needs a radius; without one there is only 'classical'")
+    return [name for name in BUFFERS if name in wanted]

@@ -1,0 +1,28 @@
+"""The main job: a scene worth looking at, lit, and each module's result beside it, on one sheet."""
+
+import sys
+from pathlib import Path
+
+import aolab
+from aolab.modules import MODULES
+from aolab.sheet import gray
+
+SIZE = (640, 360)
+
+output = Path(sys.argv[1] if len(sys.argv) > 1 else "out/demo.png")
+output.parent.mkdir(parents=True, exist_ok=True)
+
+lab = aolab.Lab(SIZE)
+scene = aolab.load("atrium")
+pictures = []
+for name in MODULES:
+    lab.render(scene, name)  # once to compile and upload, once to measure
+    frame = lab.render(scene, name)
+    print(f"{name}: {frame.info['frame_ms']:.0f} ms on {frame.info['renderer']}")
+    for step, milliseconds in frame.timings.items():
+        print(f"  {step:20} {milliseconds:7.1f} ms")
+    pictures.append((f"{name}: lit", frame.image))
+    pictures.append((f"{name}: visibility", gray(frame["visibility"])))
+
+aolab.contact_sheet(pictures).save(output)
+print(output.resolve())

@@ -1,0 +1,46 @@
+// Lights without size, in the terms of glTF's KHR_lights_punctual, and their shadow maps.
+
+const int DIRECTIONAL = 0;
+const int POINT = 1;
+const int SPOT = 2;
+
+// Towards the light, and the share of `color` that arrives on a surface facing it.
+// spotCos: cosines of the inner and outer half angle of a spot's cone.
+vec3 towardsLight(int kind, vec3 lightPos, vec3 lightDir, vec2 spotCos, vec3 worldPos, out float attenuation) {
+    attenuation = 1.0;
+    if (kind == DIRECTIONAL) return -lightDir;
+    vec3 toLight = lightPos - worldPos;
+    float squaredDistance = max(dot(toLight, toLight), 1e-12);
+    vec3 direction = toLight * inversesqrt(squaredDistance);
+    attenuation = 1.0 / squaredDistance;
+    if (kind == SPOT) {
+        float inCone = clamp((dot(-direction, lightDir) - spotCos.y) / (spotCos.x - spotCos.y), 0.0, 1.0);
+        attenuation *= inCone * inCone;
+    }
+    return direction;
+}
+
+// Which of a point light's six shadow tiles sees `fromLight`: +x -x +y -y +z -z.
+int cubeFace(vec3 fromLight) {
+    vec3 size = abs(fromLight);
+    if (size.x >= size.y && size.x >= size.z) return fromLight.x > 0.0 ? 0 : 1;
+    if (size.y >= size.z) return fromLight.y > 0.0 ? 2 : 3;
+    return fromLight.z > 0.0 ? 4 : 5;
+}
+
+// The share of light that arrives, by percentage-closer filtering (Reeves, Salesin and Cook 1987): 2×2 comparisons, each
+// interpolated by the sampler. `tile` holds the tile's lower corner and size in the atlas (uv).
+float shadowAt(sampler2DShadow atlas, mat4 shadowFromWorld, vec3 tile, vec3 worldPos) {
+    vec4 clip = shadowFromWorld * vec4(worldPos, 1.0);
+    vec3 inTile = clip.xyz / clip.w * 0.5 + 0.5;
+    if (clip.w <= 0.0 || inTile.z >= 1.0 || any(greaterThan(abs(inTile.xy - 0.5), vec2(0.5)))) return 1.0;
+    vec2 texel = 1.0 / vec2(textureSize(atlas, 0));
+    vec2 low = tile.xy + texel, high = tile.xy + tile.z - texel;  // a neighbouring tile is another light
+    vec2 at = tile.xy + inTile.xy * tile.z;
+    float lit = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * 1.5;
+        lit += texture(atlas, vec3(clamp(at + offset * texel, low, high), inTile.z));
+    }
+    return lit / 4.0;
+}

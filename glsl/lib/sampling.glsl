@@ -1,0 +1,34 @@
+// Where to look: directions in the frame of a normal, interleaved over 4×4 pixels.
+
+const float PI = 3.14159265358979;
+
+// An orthonormal frame around the unit vector `n`, as columns (tangent, bitangent, n).
+// Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no singular direction.
+mat3 frameAround(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    return mat3(1.0 + s * n.x * n.x * a, s * b, -s * n.x, b, s + n.y * n.y * a, -n.y, n);
+}
+
+// The number, 0..15, of this pixel's set of samples: each 4×4 block of pixels holds every set once.
+// A Bayer matrix, so that the sets of neighbours differ most. M = 4×4 as in SSDO (Ritschel et al. 2009, section 3).
+int interleavedSet(ivec2 pixel) {
+    ivec2 low = pixel & 1;
+    ivec2 high = (pixel >> 1) & 1;
+    return 4 * (2 * (low.x ^ low.y) + low.y) + 2 * (high.x ^ high.y) + high.y;
+}
+
+// The frame around `n`, turned by the angle of this set: the one kernel seen by 16 pixels in 16 directions
+// (Umenhoffer et al. 2009, section 4: "one set rotated by 16 angles").
+mat3 interleavedFrame(vec3 n, int set) {
+    float angleRad = 2.0 * PI * float(set) / 16.0;
+    mat3 frame = frameAround(n);
+    float c = cos(angleRad), s = sin(angleRad);
+    return mat3(c * frame[0] + s * frame[1], c * frame[1] - s * frame[0], n);
+}
+
+// How far along its direction a sample of this set lies, as a fraction of one step: `offset` is the kernel's own.
+float interleavedOffset(float offset, int set) {
+    return fract(offset + float(set) / 16.0);
+}

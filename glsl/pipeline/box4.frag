@@ -1,0 +1,38 @@
+// The mean over 4 pixels in a row or column that lie on the same surface; twice, it is the mean over 4×4: every set of
+// the interleaved pattern once (Umenhoffer et al. 2009, section 4: "a box filter that skips pixels across a depth gap").
+// Inputs: source (any channels), viewZ, viewNormal. Output: filtered, on an even window: moved by half a pixel.
+
+#include "lib/space.glsl"
+#include "lib/filter.glsl"
+
+const bool vertical;
+
+uniform sampler2D source;
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform vec4 ray_from_pixel;
+
+out vec4 filtered;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    ivec2 last = textureSize(viewZ, 0) - 1;
+    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    filtered = texelFetch(source, pixel, 0);
+    if (isBackground(centreZ)) return;
+
+    vec3 centrePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec4 sum = filtered;
+    float count = 1.0;
+    for (int i = -1; i <= 2; ++i) {
+        if (i == 0) continue;
+        ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
+        vec3 otherPos = viewPosAt(vec2(other) + 0.5, texelFetch(viewZ, other, 0).r, ray_from_pixel);
+        if (planeDistance(centrePos, normal, otherPos) < PLANE_TOLERANCE) {
+            sum += texelFetch(source, other, 0);
+            count += 1.0;
+        }
+    }
+    filtered = sum / count;
+}

@@ -1,0 +1,50 @@
+// Direct light: every light through its shadow map, reflected diffusely. Ambient occlusion takes no part in this.
+// Inputs: viewZ, viewNormal, albedo. Output: direct, linear RGB radiance: Σ albedo/π × E_light × cosθ × shadow.
+
+#include "lib/space.glsl"
+#include "lib/light.glsl"
+
+const int lights;
+const int light_slots;   // the same, but at least 1: GLSL has no empty array
+const int shadow_slots;
+
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform sampler2D albedo;
+uniform sampler2DShadow shadow_atlas;
+uniform vec4 ray_from_pixel;
+uniform mat4 world_from_view;
+uniform int light_kind[light_slots];
+uniform vec3 light_position[light_slots];
+uniform vec3 light_direction[light_slots];
+uniform vec3 light_color[light_slots];
+uniform vec2 light_spot_cos[light_slots];
+uniform int light_tile[light_slots];            // its first shadow tile, or -1 for none
+uniform mat4 shadow_from_world[shadow_slots];
+uniform vec3 shadow_tile[shadow_slots];
+
+out vec4 direct;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float surfaceZ = texelFetch(viewZ, pixel, 0).r;
+    direct = vec4(0.0);
+    if (lights == 0 || isBackground(surfaceZ)) return;
+
+    vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
+    vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 irradiance = vec3(0.0);
+    for (int i = 0; i < lights; ++i) {
+        float attenuation;
+        vec3 toLight = towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i],
+                                    worldPos, attenuation);
+        attenuation *= max(dot(worldNormal, toLight), 0.0);
+        if (attenuation > 0.0 && light_tile[i] >= 0) {
+            int tile = light_tile[i];
+            if (light_kind[i] == POINT) tile += cubeFace(-toLight);
+            attenuation *= shadowAt(shadow_atlas, shadow_from_world[tile], shadow_tile[tile], worldPos);
+        }
+        irradiance += light_color[i] * attenuation;
+    }
+    direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);
+}

@@ -1,0 +1,27 @@
+// The G-buffer: what the camera sees, before any light.
+// Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
+//          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w unused)
+//          albedo         linear diffuse albedo (RGBA16F, w unused)
+
+uniform sampler2D base_texture;
+uniform vec4 base_color;
+uniform float alpha_cutoff;
+
+in vec3 viewPos;
+in vec3 viewNormal;
+in vec2 uv;
+in vec4 color;
+
+layout(location = 0) out float surfaceViewZ;
+layout(location = 1) out vec4 surfaceNormal;
+layout(location = 2) out vec4 albedo;
+
+void main() {
+    vec4 base = base_color * color * texture(base_texture, uv);
+    if (base.a < alpha_cutoff) discard;
+    // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this
+    vec3 faceNormal = cross(dFdx(viewPos), dFdy(viewPos));
+    surfaceViewZ = viewPos.z;
+    surfaceNormal = vec4(normalize(dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
+    albedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+}

@@ -1,0 +1,17 @@
+// A light's view of an instance: depth only.
+
+in vec3 local_position;
+in vec2 texture_uv;
+in vec4 vertex_color;
+in mat4 world_from_local;
+
+uniform mat4 clip_from_world;
+
+out vec2 uv;
+out float alpha;
+
+void main() {
+    uv = texture_uv;
+    alpha = vertex_color.a;
+    gl_Position = clip_from_world * (world_from_local * vec4(local_position, 1.0));
+}

@@ -1,0 +1,51 @@
+// Joint bilateral upsampling (Kopf et al. 2007): the four nearest small pixels, weighted as in bilinear interpolation, and
+// by whether they lie on the same surface as the full-size pixel. Where none does, the one nearest in depth is taken.
+// Inputs: source, viewZ, viewNormal at full size; smallViewZ, smallNormal, source at small size. Output: upsampled.
+
+#include "lib/space.glsl"
+#include "lib/filter.glsl"
+
+uniform sampler2D source;
+uniform sampler2D smallViewZ;
+uniform sampler2D smallNormal;
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform vec4 ray_from_pixel;
+uniform vec4 small_ray_from_pixel;
+
+out vec4 upsampled;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    vec3 centrePos = viewPosAt(gl_FragCoord.xy, isBackground(centreZ) ? -1.0 : centreZ, ray_from_pixel);
+    vec2 smallPixel = (centrePos.xy / -centrePos.z - small_ray_from_pixel.zw) / small_ray_from_pixel.xy - 0.5;
+    ivec2 corner = ivec2(floor(smallPixel));
+    vec2 part = smallPixel - vec2(corner);
+    ivec2 last = textureSize(smallViewZ, 0) - 1;
+    upsampled = texelFetch(source, clamp(corner, ivec2(0), last), 0);
+    if (isBackground(centreZ)) return;
+
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec4 sum = vec4(0.0), nearest = upsampled;
+    float weights = 0.0, nearestGap = 1e30;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 step = ivec2(i & 1, i >> 1);
+        ivec2 other = clamp(corner + step, ivec2(0), last);
+        float otherZ = texelFetch(smallViewZ, other, 0).r;
+        vec4 value = texelFetch(source, other, 0);
+        float gap = planeDistance(centrePos, normal, viewPosAt(vec2(other) + 0.5, otherZ, small_ray_from_pixel));
+        vec2 bilinear = mix(1.0 - part, part, vec2(step));
+        float alike = max(dot(normal, texelFetch(smallNormal, other, 0).xyz), 0.0);
+        float weight = (bilinear.x * bilinear.y + 1e-3) * max(1.0 - gap / PLANE_TOLERANCE, 0.0) * pow(alike, 8.0);
+        if (weight > 0.0) {
+            sum += weight * value;
+            weights += weight;
+        }
+        if (gap < nearestGap) {
+            nearestGap = gap;
+            nearest = value;
+        }
+    }
+    upsampled = weights > 1e-5 ? sum / weights : nearest;
+}

@@ -1,0 +1,59 @@
+"""Two rows of columns; behind the nearest one, exactly in line with the camera, hides a pink one.
+
+SSDO 2009, Fig. 7: one view misses the hidden column, which yet shades the floor that is seen (top) and bounces pink onto
+it (bottom); peeled layers, more cameras, voxels or rays find it. `hidden=False` removes the column, which leaves
+the picture of a method that sees one layer unchanged but for its shadow: no pixel of the column itself is visible.
+"""
+
+from functools import cache
+
+import numpy as np
+
+from aolab import Camera, DirectionalLight, Environment, Instance, Material, Scene
+from aolab.shapes import beam, block, column, in_range, placed
+
+HEIGHT, RADIUS, SPACING, NAVE = 4.4, 0.36, 2.6, 4.4  # metres
+EYE, FRONT = np.array((-4.9, 2.3, 4.8)), np.array((-NAVE / 2, 0, 0))  # the camera, and the column that hides another
+BEHIND = 1.6  # times farther: in front, 1.6 × the shaft's least radius (0.84) covers the pink one's greatest (1.28)
+MARBLE = Material((0.78, 0.74, 0.67), name="marble")
+PAVING = Material((0.62, 0.57, 0.50), name="paving")
+PINK = Material((0.84, 0.16, 0.40), name="pink")
+
+
+def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0) -> Scene:
+    """`count` columns a row; `hidden`: whether the pink column is there; `sun_elevation` in degrees."""
+    in_range("colonnade", count=(count, 2, 50), sun_elevation=(sun_elevation, 1, 90))
+    elevation, azimuth = np.radians((sun_elevation, -100))  # from the left, a little behind the camera
+    towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
+    sun = DirectionalLight(tuple(-np.array(towards)), (4.4, 3.5, 2.4))
+    sea = Environment.sky((0.18, 0.36, 0.78), (0.62, 0.74, 0.86), (0.16, 0.27, 0.36))
+    instances = _temple(count) + ((_pink(),) if hidden else ())
+    return Scene(instances, (sun,), sea, Camera(tuple(EYE), (-1.75, 1.95, 0), fov=46), name="colonnade")
+
+
+@cache
+def _temple(count: int) -> tuple[Instance, ...]:
+    shaft = column(HEIGHT, RADIUS, MARBLE)
+    length = (count - 1) * SPACING
+    lintel = beam(_entablature(), length + 4 * RADIUS, MARBLE, "entablature")
+    temple = []
+    for step in range(3):
+        size = (NAVE + 2.2 + 0.8 * step, 0.24, length + 2.2 + 0.8 * step)
+        temple.append(Instance(block(size, PAVING, "step"), placed(0, -0.24 - 0.22 * step, -length / 2)))
+    for side in (-1, 1):
+        temple += [Instance(shaft, placed(side * NAVE / 2, -0.01, -i * SPACING)) for i in range(count)]
+        temple.append(Instance(lintel, placed(side * NAVE / 2, HEIGHT - 0.02, -length / 2, turn=90)))
+    return tuple(temple)
+
+
+@cache
+def _pink() -> Instance:
+    x, _, z = EYE + BEHIND * (FRONT - EYE)
+    return Instance(column(HEIGHT - 0.6, RADIUS, PINK, square_ends=False), placed(x, -0.01, z), "hidden")
+
+
+def _entablature() -> list[tuple[float, float]]:
+    """Architrave in two steps, frieze, cornice: the section's height and half width, up one side and down the other."""
+    half = [(0, 0.34), (0.22, 0.34), (0.22, 0.37), (0.42, 0.37), (0.46, 0.42), (0.50, 0.42), (0.50, 0.36)]
+    half += [(0.86, 0.36), (0.94, 0.46), (0.94, 0.58), (1.08, 0.60), (1.16, 0.68), (1.20, 0.68)]
+    return [(y, -z) for y, z in half] + half[::-1]

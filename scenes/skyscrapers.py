@@ -1,0 +1,100 @@
+"""A city of towers under a blue sky and a low yellow sun.
+
+S3HO 2012, Fig. 6: seen with directional occlusion, the side of a tower that is away from the sun keeps a blue and darker
+shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow against
+the towers' height, so the radius shows: small ones darken the kerbs, large ones whole streets.
+One unit is ten metres. The same `seed` gives the same city.
+"""
+
+from functools import cache
+
+import numpy as np
+
+from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, Scene
+from aolab.shapes import in_range, loft, placed, ring, square
+
+BLOCK, STREET, STOREY = 2.0, 0.8, 0.34
+GLASS = (0.42, 0.50, 0.60)  # of the wall's albedo
+WALLS = ((0.72, 0.70, 0.66), (0.62, 0.60, 0.57), (0.70, 0.63, 0.54), (0.55, 0.57, 0.60), (0.66, 0.52, 0.44))
+ASPHALT, PAVEMENT = Material((0.30, 0.30, 0.31), name="asphalt"), Material((0.56, 0.55, 0.53), name="pavement")
+
+
+def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun_azimuth: float = 62.0) -> Scene:
+    """`sun_azimuth`: degrees from the view's direction (-z), to the right (+x)."""
+    in_range("skyscrapers", seed=(seed, 0, 2**32 - 1), blocks=(blocks, 1, 32), sun_elevation=(sun_elevation, 1, 90))
+    in_range("skyscrapers", sun_azimuth=(sun_azimuth, -360, 360))
+    elevation, azimuth = np.radians((sun_elevation, sun_azimuth))
+    towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
+    sun = DirectionalLight(tuple(-np.array(towards)), (5.2, 3.9, 1.9))
+    sky = Environment.sky((0.14, 0.27, 0.60), (0.50, 0.62, 0.78), (0.40, 0.46, 0.55))
+    side = blocks * (BLOCK + STREET)
+    camera = Camera((0.30 * side, 0.30 * side, 0.66 * side), (-0.05 * side, 0.085 * side, -0.05 * side), fov=36)
+    return Scene(_city(seed, blocks), (sun,), sky, camera, name="skyscrapers")
+
+
+@cache
+def _city(seed: int, blocks: int) -> tuple[Instance, ...]:
+    random = np.random.default_rng(seed)
+    pitch = BLOCK + STREET
+    side = blocks * pitch
+    city = [Instance(_tower(1, ASPHALT), placed(0, -0.3, 0, scale=(side, 0.3, side)), "ground")]
+    for row, column in np.ndindex(blocks, blocks):
+        x, z = ((index - (blocks - 1) / 2) * pitch for index in (column, row))
+        city.append(Instance(_tower(1, PAVEMENT), placed(x, -0.01, z, scale=(BLOCK + 0.2, 0.06, BLOCK + 0.2)), "pavement"))
+        centrality = 1 - np.hypot(x, z) / side  # downtown is taller
+        for plot_x, plot_z, width, depth in _plots(random):
+            height = float(np.clip(random.lognormal(0.7, 0.5) * 2.3 * centrality**1.8, 0.7, 8))
+            city += _building(random, x + plot_x, z + plot_z, width, depth, height)
+    return tuple(city)
+
+
+def _plots(random: np.random.Generator) -> list[tuple[float, float, float, float]]:
+    """Centre x, z and size of the one, two or four towers of a block."""
+    gap = 0.12
+    half, whole, quarter = (BLOCK - gap) / 2, BLOCK, (BLOCK + gap) / 4
+    kind = random.integers(4)
+    if kind == 0:
+        return [(0, 0, whole, whole)]
+    if kind == 1:
+        return [(-quarter, 0, half, whole), (quarter, 0, half, whole)]
+    if kind == 2:
+        return [(0, -quarter, whole, half), (0, quarter, whole, half)]
+    return [(sx * quarter, sz * quarter, half, half) for sx in (-1, 1) for sz in (-1, 1)]
+
+
+def _building(
+    random: np.random.Generator, x: float, z: float, width: float, depth: float, height: float
+) -> list[Instance]:
+    """A tower of up to three setbacks, and a plant room on its roof."""
+    material = _wall(int(random.integers(len(WALLS))))
+    parts, bottom = [], 0.03
+    setbacks = int(random.integers(1, 4)) if height > 2.5 else 1
+    for level in range(setbacks):
+        part = height * (0.5, 0.3, 0.2)[level] if setbacks > 1 else height
+        storeys = max(1, round(part / STOREY))
+        parts.append(Instance(_tower(storeys, material), placed(x, bottom, z, scale=(width, part, depth))))
+        bottom += part - 0.01
+        width, depth = width * 0.74, depth * 0.74
+    offset = random.uniform(-0.12, 0.12, 2) * (width, depth)
+    plant = placed(x + offset[0], bottom, z + offset[1], scale=(width * 0.5, 0.22, depth * 0.45))
+    return [*parts, Instance(_tower(1, material), plant)]
+
+
+@cache
+def _wall(index: int) -> Material:
+    return Material(WALLS[index], name="wall")
+
+
+@cache
+def _tower(storeys: int, material: Material) -> Mesh:
+    """A unit box with a ledge below each storey: placed with a scale."""
+    if storeys == 1:
+        return loft(np.array([ring(square(4) / 2, 0), ring(square(4) / 2, 1)]), material, "slab")
+    floors = np.arange(storeys)[:, None] / storeys
+    sill = 0.35 / storeys
+    # each storey: a parapet, flush, and a band of glass, set back
+    half = np.tile((0.5, 0.5, 0.488, 0.488), storeys)
+    height = (floors + (0, sill, sill, 1 / storeys)).ravel()
+    rings = [ring(square(4) * size, y) for size, y in zip([*half, 0.5, 0.5], [*height, 1, 1 + sill], strict=True)]
+    colors = [*[(1, 1, 1), (1, 1, 1), GLASS, GLASS] * storeys, (1, 1, 1), (1, 1, 1)]
+    return loft(np.array(rings), material, "tower", colors=np.array(colors))
