@@ -81,10 +81,13 @@ class Camera:
         return matrix
 
     @classmethod
-    def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 40.0) -> "Camera":
-        """A camera that sees all of `bounds` (2, 3), from `direction` as seen from their centre."""
+    def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":
+        """A camera that sees all of `bounds` (2, 3), from `direction` as seen from their centre, in a square image."""
         centre = bounds.mean(axis=0)
-        radius = max(float(np.linalg.norm(bounds[1] - bounds[0])) / 2, 1e-6)
         towards = np.asarray(direction) / np.linalg.norm(direction)
-        distance = radius / np.sin(np.radians(fov) / 2)
-        return cls(eye=tuple(centre + towards * distance), target=tuple(centre), fov=fov)
+        probe = cls(eye=tuple(centre + towards), target=tuple(centre), fov=fov)
+        corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T - centre
+        x, y, z = probe.view_from_world[:3, :3] @ corners.T
+        # each corner asks for a distance at which it falls inside the frame, 5 % away from its edge
+        distance = float((z + np.maximum(np.abs(x), np.abs(y)) * 1.05 / np.tan(np.radians(fov) / 2)).max())
+        return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov)

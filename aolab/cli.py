@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from . import options
 from .errors import Error, Notice, ParameterError
 
 app = typer.Typer(
@@ -45,23 +46,23 @@ def _show_notice(message: Any, category: type[Warning], filename: str, lineno: i
 
 @app.command()
 def render(
-    scene: Annotated[str | None, typer.Argument(help="A scene's name (its parameters as in 'toasters?time=1'), or a model file.")] = None,
-    module: Annotated[str | None, typer.Option(help="The method; see `aolab modules`. Default: ssao.")] = None,
-    set_: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="A parameter of the module; repeatable.")] = None,
-    occluders: Annotated[str | None, typer.Option(metavar="KIND", help="What is tested for blocking.")] = None,
-    size: Annotated[str | None, typer.Option(metavar="WxH", help="Pixels. Default: 1280x720.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Chooses the sample set. Default: 0.")] = None,
-    accumulate: Annotated[int | None, typer.Option(metavar="K", help="Average K frames with different sample sets. Default: 1.")] = None,
-    eye: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="Camera position; needs --target.")] = None,
-    target: Annotated[str | None, typer.Option(metavar="X,Y,Z", help="The point that the camera looks at.")] = None,
-    fov: Annotated[float | None, typer.Option(metavar="DEGREES", help="Vertical field of view.")] = None,
-    exposure: Annotated[float | None, typer.Option(help="Multiplies radiance before the tone map. Default: 1.")] = None,
-    tone_map: Annotated[str | None, typer.Option(help="filmic or linear. Default: filmic.")] = None,
-    like: Annotated[Path | None, typer.Option(metavar="FILE.png", help="Make this picture again; other options override.")] = None,
-    output: Annotated[Path, typer.Option("-o", "--output", metavar="FILE.png")] = Path("out.png"),
-    buffers: Annotated[Path | None, typer.Option(metavar="FILE.npz", help="Write every buffer by name.")] = None,
-    stats: Annotated[Path | None, typer.Option(metavar="FILE.json", help="Write parameters and timings of a warm frame.")] = None,
-) -> None:  # fmt: skip
+    scene: options.Scene = None,
+    module: options.Module = None,
+    set_: options.Set = None,
+    occluders: options.Occluders = None,
+    size: options.Size = None,
+    seed: options.Seed = None,
+    accumulate: options.Accumulate = None,
+    eye: options.Eye = None,
+    target: options.Target = None,
+    fov: options.Fov = None,
+    exposure: options.Exposure = None,
+    tone_map: options.ToneMap = None,
+    like: options.Like = None,
+    output: options.Output = Path("out.png"),
+    buffers: options.Buffers = None,
+    stats: options.Stats = None,
+) -> None:
     """Render SCENE and write the picture."""
     from .command import Job
 

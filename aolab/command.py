@@ -2,10 +2,10 @@
 
 import json
 import warnings
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Self
-
 
 from .camera import Camera, Vec3
 from .errors import FileError, Notice, ParameterError
@@ -84,7 +84,7 @@ class Job:
         frame = self.render(lab, scene, module)
         if stats:
             frame = self.render(lab, scene, module)  # the first one compiled the shaders
-            frame.info["notes"] = [*(str(note.message) for note in caught), *frame.info["notes"]]
+            frame.notes = [*(str(note.message) for note in caught), *frame.notes]
         for note in caught:
             warnings.warn(note.message, note.category, stacklevel=1)
         frame.save(output)
@@ -117,10 +117,8 @@ def typed(name: str, parameters: dict[str, Any]) -> Module:
     for key, value in parameters.items():
         if key in module.model_fields and isinstance(value, str):
             # the JSON reading of a word, where it has one: 16, 0.5, true; pydantic checks it after that
-            try:
+            with suppress(json.JSONDecodeError):
                 value = json.loads(value)
-            except json.JSONDecodeError:
-                pass
         values[key] = value
     return module(**values)
 

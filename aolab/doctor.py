@@ -20,7 +20,7 @@ _LIBRARIES = ("numpy", "moderngl", "glcontext", "trimesh", "Pillow", "OpenEXR", 
 
 
 def examine() -> dict[str, Any]:
-    """All findings; `renders` says whether anything can render here, `remedies` what to do where something is missing."""
+    """All findings; `renders`: whether anything can render here; `remedies`: what to do where something is missing."""
     from .gl import context
 
     findings: dict[str, Any] = {

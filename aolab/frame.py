@@ -25,15 +25,17 @@ _NAN_IN_BACKGROUND = ("visibility",)
 class Frame:
     """One rendered frame.
 
-    `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists the
-    names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}. `info` says how it was made: renderer, module,
-    parameters, camera, size, seed, ... A frame keeps its textures until it is dropped, so frames may be held and
-    compared; each costs about 50 bytes a pixel.
+    `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
+    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` says how it
+    was made: renderer, module, parameters, camera, size, seed, ...; `notes` what was repaired or left out. A frame
+    keeps its textures until it is dropped, so frames may be held and compared; each costs about 50 bytes a pixel.
     """
 
     textures: Mapping[str, moderngl.Texture | np.ndarray]
     timings: dict[str, float]
     info: dict[str, Any]
+    frame_ms: float = 0.0
+    notes: list[str] = field(default_factory=list)
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
@@ -82,7 +84,7 @@ class Frame:
         """How it was made and what it cost, for `--stats`; times in milliseconds."""
         keys = ("renderer", "size", "module", "parameters", "triangles", "seed")
         known = {key: self.info[key] for key in keys if key in self.info}
-        return {**known, "timings": self.timings, "frame_ms": self.info["frame_ms"], "notes": self.info["notes"]}
+        return {**known, "timings": self.timings, "frame_ms": self.frame_ms, "notes": self.notes}
 
     def _repr_png_(self) -> bytes:
         data = BytesIO()

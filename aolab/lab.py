@@ -5,8 +5,6 @@ from dataclasses import asdict
 from time import perf_counter
 from typing import Any
 
-import moderngl
-
 from . import filters, lighting, surfaces
 from .camera import Camera
 from .draw import Buffers, Painter
@@ -79,8 +77,8 @@ class Lab:
                 _whole("accumulate", accumulate, 1),
                 _display(exposure, tone_map),
             )
-        frame.info["notes"] = [str(note.message) for note in caught]
-        frame.info["frame_ms"] = (perf_counter() - start) * 1e3
+        frame.notes = [str(note.message) for note in caught]
+        frame.frame_ms = (perf_counter() - start) * 1e3
         for note in caught:
             warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
         return frame

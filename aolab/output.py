@@ -12,7 +12,7 @@ from .errors import FileError
 
 
 def check_writable(path: str | PathLike[str]) -> Path:
-    """The path, if a file can be written there; raises `FileError` naming what is in the way. Call it before the work."""
+    """The path, if a file can be written there; raises `FileError` naming what is in the way. For before the work."""
     target = Path(path)
     folder = target.parent
     if not folder.exists():

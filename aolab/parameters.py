@@ -1,4 +1,4 @@
-"""Parameters, stated once: validation, command line, uniforms, sliders and the docs' tables derive from the statement."""
+"""Parameters, stated once: validation, command line, uniforms, sliders and docs derive from the statement."""
 
 from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
 
@@ -23,7 +23,7 @@ def parameter(
 
 
 class Parameters(BaseModel):
-    """Values with names, types, ranges and units. Raises `ParameterError` for an unknown name or a value out of range."""
+    """Values with names, types, ranges and units. Raises `ParameterError` for an unknown name or a wrong value."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, use_attribute_docstrings=False)
 

@@ -1,4 +1,4 @@
-"""Where the shaders and scenes are: environment variable, then the checkout, then the installed package."""
+"""Where the shaders and scenes are: environment variable, else the checkout or the installed package."""
 
 import os
 from functools import cache
@@ -11,7 +11,7 @@ _PACKAGE = Path(__file__).resolve().parent
 
 @cache
 def _find(folder: str, variable: str) -> Path:
-    candidates = [_PACKAGE.parent / folder, _PACKAGE / folder]
+    candidates = [_PACKAGE / folder, _PACKAGE.parent / folder]  # a checkout has no aolab/glsl
     if override := os.environ.get(variable):
         candidates = [Path(override).resolve()]
     for candidate in candidates:

@@ -37,9 +37,12 @@ class Instance:
 
 
 def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
-    """The light of a scene that brings none: a blue gradient sky and a warm sun from the upper left."""
-    sun = DirectionalLight(direction=(0.45, -1.0, -0.55), irradiance=(2.2, 2.0, 1.7))
-    return Environment.sky(), (sun,)
+    """The light of a scene that brings none: a hazy blue sky, and a warm sun from the upper left.
+
+    White in full light has radiance about 1.2: under the filmic curve it is bright and not burnt out.
+    """
+    sky = Environment.sky(zenith=(0.16, 0.28, 0.50), horizon=(0.46, 0.50, 0.56), ground=(0.20, 0.18, 0.15))
+    return sky, (DirectionalLight(direction=(0.7, -1.0, -0.45), irradiance=(3.4, 3.1, 2.6)),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,8 +77,8 @@ class Scene:
             )
         if not self.radius > 1e-12 or not self.radius > 1e-6 * extent:
             raise SceneError(
-                f"scene '{self.name}' has radius {self.radius:.3g} at {extent:.3g} from the origin: too small for float32; "
-                "scale it or move it to the origin"
+                f"scene '{self.name}' has radius {self.radius:.3g} at {extent:.3g} from the origin: too small for "
+                "float32; scale it or move it to the origin"
             )
         if self.camera is None:
             object.__setattr__(self, "camera", Camera.framing(self.bounds))

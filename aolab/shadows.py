@@ -31,7 +31,7 @@ _CUBE = (
 
 @dataclass(frozen=True)
 class ShadowMaps:
-    """`atlas` is a depth texture; tile i covers `tiles[i]` (corner x, corner y, size; uv), seen through `matrices[i]`."""
+    """`atlas` is a depth texture; tile i covers `tiles[i]` (corner x, y and size, in uv), seen by `matrices[i]`."""
 
     atlas: moderngl.Texture
     matrices: np.ndarray  # (tiles, 4, 4) clip_from_world
@@ -42,9 +42,7 @@ class ShadowMaps:
 def look_along(position: np.ndarray, direction: np.ndarray, up: np.ndarray | None = None) -> np.ndarray:
     """(4, 4) view_from_world of a light at `position` that looks along `direction`."""
     backward = -np.asarray(direction, float) / np.linalg.norm(direction)
-    if up is None:
-        up = np.eye(3)[np.argmin(np.abs(backward))]
-    right = np.cross(up, backward)
+    right = np.cross(np.eye(3)[np.argmin(np.abs(backward))] if up is None else up, backward)
     right /= np.linalg.norm(right)
     matrix = np.eye(4)
     matrix[:3, :3] = right, np.cross(backward, right), backward
@@ -94,8 +92,8 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
             f"{len(matrices)} shadow tiles; the limit is {MAX_TILES}. Set shadow=False on the lesser lights"
         )
     side = max(1, ceil(sqrt(len(matrices))))
-    size = (side * TILE if matrices else 1,) * 2
-    atlas = gl.depth_texture(size)
+    width = side * TILE if matrices else 1
+    atlas = gl.depth_texture((width, width))
     atlas.compare_func = "<="
     atlas.filter = (moderngl.LINEAR, moderngl.LINEAR)
     atlas.repeat_x = atlas.repeat_y = False
@@ -112,7 +110,7 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
             uniforms = {"clip_from_world": matrix_bytes(matrix), "base_color": (1.0,) * 4, "alpha_cutoff": 0.0}
             program.set(uniforms)
             painter.bind_unit(program, "base_texture", 0)
-            geometry.draw(scene, program, materials=True)
+            geometry.draw(scene, program)
         gl.polygon_offset = 0.0, 0.0
         gl.enable_only(moderngl.NOTHING)
     stacked = np.array(matrices) if matrices else np.eye(4)[None]

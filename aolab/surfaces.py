@@ -1,4 +1,4 @@
-"""Surfaces: what the camera sees, before any light (the G-buffer), and the smaller copy for estimates at low resolution."""
+"""Surfaces: what the camera sees, before any light (the G-buffer), and its smaller copy."""
 
 import moderngl
 import numpy as np
@@ -42,7 +42,7 @@ def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: S
         painter.pool.framebuffer([buffers["viewZ"]]).clear(red=BACKGROUND_Z)
         framebuffer.use()
         gl.enable_only(moderngl.DEPTH_TEST)
-        geometry.draw(scene, program, materials=True)
+        geometry.draw(scene, program)
         gl.enable_only(moderngl.NOTHING)
     return buffers
 

@@ -18,7 +18,7 @@ pictures = []
 for name in MODULES:
     lab.render(scene, name)  # once to compile and upload, once to measure
     frame = lab.render(scene, name)
-    print(f"{name}: {frame.info['frame_ms']:.0f} ms on {frame.info['renderer']}")
+    print(f"{name}: {frame.frame_ms:.0f} ms on {frame.info['renderer']}")
     for step, milliseconds in frame.timings.items():
         print(f"  {step:20} {milliseconds:7.1f} ms")
     pictures.append((f"{name}: lit", frame.image))

@@ -31,7 +31,7 @@ void main() {
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    viewPos += normal * liftOff(bias * radius, viewPos, ray_from_pixel);
+    viewPos += normal * liftOff(bias * radius, radius, viewPos, ray_from_pixel);
     int set = interleavedSet(pixel);
     mat3 frame = interleavedFrame(normal, set) * radius;
 

@@ -1,7 +1,7 @@
 """Three boxes between a pink and a turquoise light: shadows take the colour of the light that still arrives.
 
-S3HO 2012, Fig. 5 (there too, the lights are then swapped) and SSDO 2009, Fig. 3: plain occlusion darkens every crease to
-the same grey, directional occlusion leaves pink what only the pink light sees. The scene is its own mirror image in
+S3HO 2012, Fig. 5 (there too, the lights are then swapped) and SSDO 2009, Fig. 3: plain occlusion darkens every crease
+to the same grey, directional occlusion leaves pink what only the pink light sees. The scene is its own mirror image in
 the plane x = 0, and so is the camera; swapping the lights therefore mirrors the picture, which is an exact test.
 """
 
@@ -23,7 +23,9 @@ def boxes(swap: bool = False, light: float = 1.0, ambient: float = 1.0) -> Scene
         SpotLight((side * 5.5, 5.0, 2.5), (side * -5.5, -4.6, -2.5), tuple(light * 95 * color), inner=14, outer=42)
         for side, color in ((-1, left), (1, right))
     )
-    return Scene(_still_life(), lamps, _glow(ambient, left, right), Camera((0, 2.7, 6.6), (0, 0.72, 0), fov=31), name="boxes")
+    return Scene(
+        _still_life(), lamps, _glow(ambient, left, right), Camera((0, 2.7, 6.6), (0, 0.72, 0), fov=31), name="boxes"
+    )
 
 
 @cache
@@ -47,12 +49,15 @@ def _backdrop(width: float = 16.0, thickness: float = 0.2) -> Mesh:
     tangent = np.gradient(profile, axis=0)
     outside = np.stack([tangent[:, 1], -tangent[:, 0]], axis=-1) / np.linalg.norm(tangent, axis=1, keepdims=True)
     behind = profile + thickness * outside
-    rings = [[(-width / 2, *a), (width / 2, *a), (width / 2, *b), (-width / 2, *b)] for a, b in zip(profile, behind, strict=True)]
+    rings = [
+        [(-width / 2, *a), (width / 2, *a), (width / 2, *b), (-width / 2, *b)]
+        for a, b in zip(profile, behind, strict=True)
+    ]
     return loft(np.array(rings), PAPER, "backdrop")
 
 
 def _glow(strength: float, left: np.ndarray, right: np.ndarray) -> Environment:
-    """Dim grey all around, and in it the lamps' wide soft boxes: what methods that look up the environment see of them."""
+    """Dim grey, and in it the lamps' wide soft boxes: what methods that look up the environment see of them."""
     azimuth = 2 * np.pi * ((np.arange(128) + 0.5) / 128 - 0.5)
     polar = np.pi * (np.arange(64) + 0.5) / 64
     across, up = np.sin(azimuth) * np.sin(polar)[:, None], np.cos(polar)[:, None] + 0 * azimuth

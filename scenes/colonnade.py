@@ -1,7 +1,7 @@
 """Two rows of columns; behind the nearest one, exactly in line with the camera, hides a pink one.
 
-SSDO 2009, Fig. 7: one view misses the hidden column, which yet shades the floor that is seen (top) and bounces pink onto
-it (bottom); peeled layers, more cameras, voxels or rays find it. `hidden=False` removes the column, which leaves
+SSDO 2009, Fig. 7: one view misses the hidden column, which yet shades the floor that is seen (top) and bounces pink
+onto it (bottom); peeled layers, more cameras, voxels or rays find it. `hidden=False` removes the column, which leaves
 the picture of a method that sees one layer unchanged but for its shadow: no pixel of the column itself is visible.
 """
 
@@ -23,12 +23,12 @@ PINK = Material((0.84, 0.16, 0.40), name="pink")
 def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0) -> Scene:
     """`count` columns a row; `hidden`: whether the pink column is there; `sun_elevation` in degrees."""
     in_range("colonnade", count=(count, 2, 50), sun_elevation=(sun_elevation, 1, 90))
-    elevation, azimuth = np.radians((sun_elevation, -100))  # from the left, a little behind the camera
+    elevation, azimuth = np.radians((sun_elevation, -125))  # from behind the camera, to its left
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
-    sun = DirectionalLight(tuple(-np.array(towards)), (4.4, 3.5, 2.4))
-    sea = Environment.sky((0.18, 0.36, 0.78), (0.62, 0.74, 0.86), (0.16, 0.27, 0.36))
+    sun = DirectionalLight(tuple(-np.array(towards)), (3.1, 2.25, 1.4))
+    sea = Environment.sky((0.10, 0.20, 0.44), (0.40, 0.47, 0.54), (0.07, 0.13, 0.18))
     instances = _temple(count) + ((_pink(),) if hidden else ())
-    return Scene(instances, (sun,), sea, Camera(tuple(EYE), (-1.75, 1.95, 0), fov=46), name="colonnade")
+    return Scene(instances, (sun,), sea, Camera(tuple(EYE), (-1.75, 2.05, 0), fov=49), name="colonnade")
 
 
 @cache
@@ -54,6 +54,6 @@ def _pink() -> Instance:
 
 def _entablature() -> list[tuple[float, float]]:
     """Architrave in two steps, frieze, cornice: the section's height and half width, up one side and down the other."""
-    half = [(0, 0.34), (0.22, 0.34), (0.22, 0.37), (0.42, 0.37), (0.46, 0.42), (0.50, 0.42), (0.50, 0.36)]
-    half += [(0.86, 0.36), (0.94, 0.46), (0.94, 0.58), (1.08, 0.60), (1.16, 0.68), (1.20, 0.68)]
+    half = [(0, 0.42), (0.22, 0.43), (0.225, 0.46), (0.42, 0.47), (0.46, 0.52), (0.50, 0.53), (0.505, 0.45)]
+    half += [(0.86, 0.46), (0.94, 0.56), (0.945, 0.68), (1.08, 0.70), (1.16, 0.78), (1.20, 0.79)]
     return [(y, -z) for y, z in half] + half[::-1]

@@ -37,7 +37,9 @@ def _room() -> tuple[Instance, ...]:
     return (
         Instance(block((outer, WALL, side[2] + 2 * sunk), WHITE, "floor"), placed(0, -WALL, middle)),
         Instance(_ceiling(outer, side[2] + 2 * sunk), placed(0, HEIGHT, middle)),
-        Instance(block((LAMP[0] + 0.2, WALL, LAMP[1] + 0.2), WHITE, "lid"), placed(0, HEIGHT + WALL - sunk, -DEPTH / 2)),
+        Instance(
+            block((LAMP[0] + 0.2, WALL, LAMP[1] + 0.2), WHITE, "lid"), placed(0, HEIGHT + WALL - sunk, -DEPTH / 2)
+        ),
         Instance(block((WIDTH + sunk, side[1], WALL), WHITE, "back wall"), placed(0, -sunk, -DEPTH - WALL / 2 + sunk)),
         Instance(block(side, RED, "left wall"), placed(-across, -sunk, middle)),
         Instance(block(side, GREEN, "right wall"), placed(across, -sunk, middle)),
@@ -50,8 +52,12 @@ def _ceiling(width: float, depth: float) -> Mesh:
     """`WALL` thick, with the lamp's opening in the middle of the room."""
     corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) / 2
     rings = [
-        [(x * width, 0, z * depth), (x * width, WALL, z * depth), (x * LAMP[0], WALL, z * LAMP[1] + WALL / 2),
-         (x * LAMP[0], 0, z * LAMP[1] + WALL / 2)]
+        [
+            (x * width, 0, z * depth),
+            (x * width, WALL, z * depth),
+            (x * LAMP[0], WALL, z * LAMP[1] + WALL / 2),
+            (x * LAMP[0], 0, z * LAMP[1] + WALL / 2),
+        ]
         for x, z in corners
     ]
     return loft(np.array(rings), WHITE, "ceiling", closed=True)
@@ -68,4 +74,4 @@ def _front(strength: float) -> Environment:
     polar = np.pi * (np.arange(32) + 0.5) / 32
     towards_front = -np.cos(azimuth) * np.sin(polar)[:, None]
     window = np.clip(towards_front, 0, 1)[..., None] ** 2 * (0.42, 0.47, 0.55)
-    return Environment(strength * (window + (0.05, 0.053, 0.06)), "open front")
+    return Environment(strength * (window + np.array((0.05, 0.053, 0.06))), "open front")

@@ -1,7 +1,7 @@
 """A city of towers under a blue sky and a low yellow sun.
 
-S3HO 2012, Fig. 6: seen with directional occlusion, the side of a tower that is away from the sun keeps a blue and darker
-shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow against
+S3HO 2012, Fig. 6: seen with directional occlusion, the side of a tower that is away from the sun keeps a blue and
+darker shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow against
 the towers' height, so the radius shows: small ones darken the kerbs, large ones whole streets.
 One unit is ten metres. The same `seed` gives the same city.
 """
@@ -14,21 +14,21 @@ from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mes
 from aolab.shapes import in_range, loft, placed, ring, square
 
 BLOCK, STREET, STOREY = 2.0, 0.8, 0.34
-GLASS = (0.42, 0.50, 0.60)  # of the wall's albedo
+GLASS = (0.62, 0.68, 0.76)  # of the wall's albedo
 WALLS = ((0.72, 0.70, 0.66), (0.62, 0.60, 0.57), (0.70, 0.63, 0.54), (0.55, 0.57, 0.60), (0.66, 0.52, 0.44))
 ASPHALT, PAVEMENT = Material((0.30, 0.30, 0.31), name="asphalt"), Material((0.56, 0.55, 0.53), name="pavement")
 
 
-def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun_azimuth: float = 62.0) -> Scene:
+def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun_azimuth: float = 82.0) -> Scene:
     """`sun_azimuth`: degrees from the view's direction (-z), to the right (+x)."""
     in_range("skyscrapers", seed=(seed, 0, 2**32 - 1), blocks=(blocks, 1, 32), sun_elevation=(sun_elevation, 1, 90))
     in_range("skyscrapers", sun_azimuth=(sun_azimuth, -360, 360))
     elevation, azimuth = np.radians((sun_elevation, sun_azimuth))
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
-    sun = DirectionalLight(tuple(-np.array(towards)), (5.2, 3.9, 1.9))
-    sky = Environment.sky((0.14, 0.27, 0.60), (0.50, 0.62, 0.78), (0.40, 0.46, 0.55))
+    sun = DirectionalLight(tuple(-np.array(towards)), (4.9, 3.4, 1.4))
+    sky = Environment.sky((0.08, 0.18, 0.50), (0.36, 0.50, 0.74), (0.24, 0.33, 0.48))
     side = blocks * (BLOCK + STREET)
-    camera = Camera((0.30 * side, 0.30 * side, 0.66 * side), (-0.05 * side, 0.085 * side, -0.05 * side), fov=36)
+    camera = Camera((0.46 * side, 0.29 * side, 0.58 * side), (-0.02 * side, 0.085 * side, -0.02 * side), fov=34)
     return Scene(_city(seed, blocks), (sun,), sky, camera, name="skyscrapers")
 
 
@@ -40,10 +40,12 @@ def _city(seed: int, blocks: int) -> tuple[Instance, ...]:
     city = [Instance(_tower(1, ASPHALT), placed(0, -0.3, 0, scale=(side, 0.3, side)), "ground")]
     for row, column in np.ndindex(blocks, blocks):
         x, z = ((index - (blocks - 1) / 2) * pitch for index in (column, row))
-        city.append(Instance(_tower(1, PAVEMENT), placed(x, -0.01, z, scale=(BLOCK + 0.2, 0.06, BLOCK + 0.2)), "pavement"))
+        city.append(
+            Instance(_tower(1, PAVEMENT), placed(x, -0.01, z, scale=(BLOCK + 0.2, 0.06, BLOCK + 0.2)), "pavement")
+        )
         centrality = 1 - np.hypot(x, z) / side  # downtown is taller
         for plot_x, plot_z, width, depth in _plots(random):
-            height = float(np.clip(random.lognormal(0.7, 0.5) * 2.3 * centrality**1.8, 0.7, 8))
+            height = float(np.clip(random.lognormal(0.7, 0.5) * 2.3 * centrality**1.8, 0.7, 6.5))
             city += _building(random, x + plot_x, z + plot_z, width, depth, height)
     return tuple(city)
 
@@ -94,7 +96,7 @@ def _tower(storeys: int, material: Material) -> Mesh:
     sill = 0.35 / storeys
     # each storey: a parapet, flush, and a band of glass, set back
     half = np.tile((0.5, 0.5, 0.488, 0.488), storeys)
-    height = (floors + (0, sill, sill, 1 / storeys)).ravel()
+    height = (floors + np.array((0, sill, sill, 1 / storeys))).ravel()
     rings = [ring(square(4) * size, y) for size, y in zip([*half, 0.5, 0.5], [*height, 1, 1 + sill], strict=True)]
     colors = [*[(1, 1, 1), (1, 1, 1), GLASS, GLASS] * storeys, (1, 1, 1), (1, 1, 1)]
     return loft(np.array(rings), material, "tower", colors=np.array(colors))

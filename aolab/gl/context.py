@@ -2,11 +2,11 @@
 
 import atexit
 import ctypes
-import ctypes.util
 import os
 import sys
 import threading
 from dataclasses import dataclass
+from typing import Any
 
 import moderngl
 
@@ -14,6 +14,9 @@ from ..errors import ContextError
 
 REQUIRED = 330  # OpenGL 3.3 core: what every course machine has (macOS stops at 4.1)
 _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "SwiftShader", "Microsoft Basic Render")
+
+# by their loader names: a search by linker name misses libraries in private folders (conda, LD_LIBRARY_PATH)
+_LINUX = {"backend": "egl", "libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
 
 
 @dataclass
@@ -34,8 +37,8 @@ def get() -> moderngl.Context:
         atexit.register(release)
     elif os.getpid() != _state.process:
         raise ContextError(
-            f"this process ({os.getpid()}) was forked from {_state.process}, which holds the OpenGL context, and a context "
-            "does not survive a fork; start workers with multiprocessing.get_context('spawn')"
+            f"this process ({os.getpid()}) was forked from {_state.process}, which holds the OpenGL context, and a "
+            "context does not survive a fork; start workers with multiprocessing.get_context('spawn')"
         )
     elif threading.get_ident() != _state.thread:
         raise ContextError(
@@ -67,9 +70,8 @@ def devices() -> list[str]:
     """The EGL devices of this machine, in the order of `AOLAB_DEVICE`; empty where EGL cannot list them."""
     if not sys.platform.startswith("linux"):
         return []
-    library = ctypes.util.find_library("EGL") or "libEGL.so.1"
     try:
-        egl = ctypes.CDLL(library)
+        egl = ctypes.CDLL(_LINUX["libegl"])
     except OSError:
         return []
     egl.eglGetProcAddress.restype = ctypes.c_void_p
@@ -104,9 +106,8 @@ def _create() -> moderngl.Context:
     reasons = []
     for index in _preferred_devices():
         try:
-            return _checked(
-                moderngl.create_context(standalone=True, require=REQUIRED, backend="egl", device_index=index)
-            )
+            settings: dict[str, Any] = {**_LINUX, "device_index": index}
+            return _checked(moderngl.create_context(standalone=True, require=REQUIRED, **settings))
         except Exception as error:
             reasons.append(f"device {index}: {error}")
     raise ContextError(

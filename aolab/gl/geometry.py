@@ -35,12 +35,11 @@ class Geometry:
         self._textures: weakref.WeakKeyDictionary[Texture, moderngl.Texture] = weakref.WeakKeyDictionary()
         self._white: moderngl.Texture | None = None
 
-    def draw(self, scene: Scene, program: Program, materials: bool) -> None:
-        """Draw every instance. With `materials`, sets base_color, alpha_cutoff and the texture `base_texture` (unit 0)."""
+    def draw(self, scene: Scene, program: Program) -> None:
+        """Draw every instance; sets the program's base_color and alpha_cutoff, and puts base_texture on unit 0."""
         for mesh, placements in self._by_mesh(scene).items():
             gpu = self._place(mesh, placements)
-            if materials:
-                self._use_material(mesh, program)
+            self._use_material(mesh, program)
             self._array(gpu, program).render(instances=len(placements))
 
     @staticmethod
@@ -110,7 +109,7 @@ def _upload_texture(texture: Texture) -> moderngl.Texture:
         scale = limit / max(width, height)
         size = max(1, int(width * scale)), max(1, int(height * scale))
         warnings.warn(
-            f"texture '{texture.name}' of {width}x{height} is beyond this driver's {limit}; drawn at {size[0]}x{size[1]}",
+            f"texture '{texture.name}' of {width}x{height} is over the driver's {limit}: drawn at {size[0]}x{size[1]}",
             Notice,
             stacklevel=2,
         )

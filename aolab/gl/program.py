@@ -30,12 +30,12 @@ class Program:
     def __post_init__(self) -> None:
         members = {name: self.gl[name] for name in self.gl}
         self.uniforms = {name: member for name, member in members.items() if isinstance(member, moderngl.Uniform)}
-        self.samplers = [name for name, uniform in self.uniforms.items() if uniform.gl_type in _SAMPLERS]
+        self.samplers = [name for name, uniform in self.uniforms.items() if _is_sampler(uniform)]
 
     def set(self, values: Mapping[str, object]) -> None:
         """Set every uniform that is not a sampler from `values`; one that nothing gives is an error."""
         for name, uniform in self.uniforms.items():
-            if uniform.gl_type in _SAMPLERS:
+            if _is_sampler(uniform):
                 continue
             if name not in values:
                 raise ShaderError(f"{self.name}: uniform '{name}' is given by nothing{suggestion(name, values)}")
@@ -51,8 +51,12 @@ class Program:
         return any(_stamp(path) != stamp for path, stamp in self.files.items())
 
 
-# GL_SAMPLER_2D, _3D, _CUBE, _2D_SHADOW, _2D_ARRAY, _2D_ARRAY_SHADOW, GL_INT_SAMPLER_2D, GL_UNSIGNED_INT_SAMPLER_2D, _2D_ARRAY
-_SAMPLERS = {0x8B5E, 0x8B5F, 0x8B60, 0x8B62, 0x8DC1, 0x8DC4, 0x8DCA, 0x8DD2, 0x8DD7}
+# GL_SAMPLER_: 2D, 3D, CUBE, 2D_SHADOW, 2D_ARRAY, 2D_ARRAY_SHADOW, and INT_ and UNSIGNED_INT_ forms of 2D and 2D_ARRAY
+_SAMPLERS = {0x8B5E, 0x8B5F, 0x8B60, 0x8B62, 0x8DC1, 0x8DC4, 0x8DCA, 0x8DCF, 0x8DD2, 0x8DD7}
+
+
+def _is_sampler(uniform: moderngl.Uniform) -> bool:
+    return uniform.gl_type in _SAMPLERS  # pyright: ignore[reportAttributeAccessIssue]  # its stub lacks it
 
 
 def _stamp(path: Path) -> int:
@@ -99,7 +103,7 @@ class Programs:
         return self._programs[key] if key in self._programs else self._keep(_compile(request))
 
     def reload(self, only_changed: bool = False) -> list[str]:
-        """Compile again what changed (or everything); returns the names. On `ShaderError` the last good programs stay."""
+        """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay."""
         stale = {key: program for key, program in self._programs.items() if not only_changed or program.changed()}
         fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
         for key in stale:

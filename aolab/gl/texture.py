@@ -77,7 +77,7 @@ class Pool:
             self._free[size, format].append(texture)
 
     def framebuffer(
-        self, textures: list[moderngl.Texture], depth: moderngl.Texture | None = None
+        self, textures: list[moderngl.Texture], depth: moderngl.Renderbuffer | None = None
     ) -> moderngl.Framebuffer:
         """A framebuffer over these textures, kept."""
         key = (*(texture.glo for texture in textures), -1 if depth is None else depth.glo)

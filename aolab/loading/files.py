@@ -93,6 +93,8 @@ def _scene_from_other(path: Path, folder: Folder) -> Scene:
     from .trimeshes import scene_from_trimesh
 
     data, suffix = path.read_bytes(), path.suffix.lower()
+    if suffix == ".stl":
+        _refuse_truncated_stl(data)
     file = io.StringIO(decoded(data)) if suffix == ".obj" else io.BytesIO(data)
     loaded = read_trimesh(file, suffix[1:], folder)
     if folder.refused:
@@ -106,3 +108,12 @@ def _scene_from_other(path: Path, folder: Folder) -> Scene:
     if len(names) == 1 and names[0].startswith("geometry_"):  # PLY and STL name nothing; the file's name says more
         loaded = trimesh.Scene({path.stem: loaded.geometry[names[0]]})
     return scene_from_trimesh(loaded, textures)
+
+
+def _refuse_truncated_stl(data: bytes) -> None:
+    """A binary STL is 84 bytes and 50 a triangle; of a shorter one trimesh tries to make text."""
+    if data[:5].lower() == b"solid":  # text
+        return
+    expected = 84 + 50 * int.from_bytes(data[80:84], "little")
+    if len(data) < expected:
+        raise FileError(f"is truncated or no STL file: {len(data)} of {expected} bytes")

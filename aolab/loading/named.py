@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from numbers import Integral, Real
 from pathlib import Path
+from types import FunctionType
 from urllib.parse import quote, unquote
 
 from .. import paths
@@ -21,7 +22,7 @@ TRUTHS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0":
 
 @dataclass(frozen=True)
 class SceneDescription:
-    """`summary` is the first line of the scene's docstring; `parameters` are its parameters with their defaults."""
+    """`summary` is the first line of the file's docstring, or else the function's; `parameters` maps to defaults."""
 
     name: str
     summary: str
@@ -36,9 +37,9 @@ def scene_names() -> list[str]:
 def describe_scene(name: str) -> SceneDescription:
     """What `aolab scenes` shows. Raises `FileError` for an unknown scene."""
     function = _function(name)
-    document = inspect.getdoc(function) or inspect.getdoc(inspect.getmodule(function)) or ""
+    document = str(function.__globals__["__doc__"] or inspect.getdoc(function) or "")
     defaults = {key: parameter.default for key, parameter in _signature(function).items()}
-    return SceneDescription(name, document.partition("\n")[0], defaults)
+    return SceneDescription(name, document.strip().partition("\n")[0], defaults)
 
 
 def load_scene(source: str, parameters: Mapping[str, object]) -> Scene | None:
@@ -78,7 +79,7 @@ def load_scene(source: str, parameters: Mapping[str, object]) -> Scene | None:
     return scene.replace(name=name, source="?".join([name, *(["&".join(changed)] if changed else [])]))
 
 
-def _function(name: str) -> Callable[..., object]:
+def _function(name: str) -> FunctionType:
     path = paths.scenes() / f"{name}.py"
     if name not in scene_names():
         kind = "; a directory of that name exists, but a model is a file" if Path(name).is_dir() else ""
@@ -87,7 +88,7 @@ def _function(name: str) -> Callable[..., object]:
 
 
 @lru_cache(maxsize=64)
-def _import(path: Path, changed_ns: int) -> Callable[..., object]:
+def _import(path: Path, changed_ns: int) -> FunctionType:
     """The scene function; imported once per change of its file, so that meshes the scene keeps stay on the GPU."""
     specification = importlib.util.spec_from_file_location(f"aolab_scenes_{path.stem}_{changed_ns}", path)
     assert specification is not None
@@ -98,9 +99,8 @@ def _import(path: Path, changed_ns: int) -> Callable[..., object]:
     except Exception as error:
         raise FileError(f"scene '{path.stem}' ({path}) cannot be imported: {type(error).__name__}: {error}") from error
     function = getattr(module, path.stem, None)
-    if not callable(function):
+    if not inspect.isfunction(function):
         raise FileError(f"scene '{path.stem}' ({path}) defines no function {path.stem}()")
-    function.__doc__ = function.__doc__ or module.__doc__
     return function
 
 

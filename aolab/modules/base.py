@@ -99,4 +99,4 @@ def find(module: "str | Module | type[Module]", modules: Mapping[str, type[Modul
         if module not in modules:
             raise ParameterError(f"no module '{module}'{suggestion(module, modules)}")
         module = modules[module]
-    return module(**parameters)
+    return module(**parameters)  # pyright: ignore[reportArgumentType]  # pydantic checks them

@@ -42,12 +42,12 @@ def key(scene: Scene, **settings: object) -> str:
 
 
 def load(name: str) -> dict[str, np.ndarray] | None:
-    """The arrays stored under `name`; None if there are none. A damaged entry counts as none, and a `Notice` says so."""
+    """The arrays stored under `name`, or None. A damaged entry counts as none, and a `Notice` says so."""
     path = _path(name)
     try:
         with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
             arrays = {key: file[key] for key in file.files}
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
         warnings.warn(f"the cached reference {path.name} is damaged and is made anew: {error}", Notice, stacklevel=3)
@@ -58,7 +58,7 @@ def load(name: str) -> dict[str, np.ndarray] | None:
 
 
 def store(name: str, arrays: dict[str, np.ndarray]) -> None:
-    """Keep `arrays` under `name`, replacing atomically. Where that fails the result still stands: a `Notice` says why."""
+    """Keep `arrays` under `name`, replacing atomically. Failing, it only says so, in a `Notice`."""
     path = _path(name)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

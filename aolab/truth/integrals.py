@@ -42,12 +42,16 @@ def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
     return np.clip((1 - squared_distance) / np.float32(max(falloff, 1e-4)), 0, 1)
 
 
-def fuzzy_openness(distance: np.ndarray, radius: float, measure: Measure) -> np.ndarray:
-    """μ(d) of Umenhoffer et al. 2009, figure 1; `exponential` takes σ = 1/radius and reaches on for ever."""
+def fuzzy_openness(distance: np.ndarray, measure: Measure) -> np.ndarray:
+    """μ of Umenhoffer et al. 2009, figure 1, `distance` in radii; `exponential` takes σ = 1/radius and never ends."""
     if measure == "exponential":
-        return 1 - np.exp(-distance / np.float32(radius))
-    share = np.minimum(distance / np.float32(radius), 1)
-    return {"classical": np.floor, "linear": np.positive, "sqrt": np.sqrt}[measure](share)
+        return 1 - np.exp(-distance)
+    return {"classical": np.floor, "linear": np.positive, "sqrt": np.sqrt}[measure](np.minimum(distance, 1))
+
+
+def in_radii(hits: Hits, radius: float) -> np.ndarray:
+    """(n,): distances as multiples of the radius, infinite where nothing was hit, also when the radius is."""
+    return np.where(hits.triangle >= 0, hits.distance / np.float32(radius), np.float32(np.inf))
 
 
 @dataclass
@@ -87,7 +91,7 @@ class Sample:
     @cached_property
     def openness(self) -> np.ndarray:
         """(n,): μ(d)."""
-        return fuzzy_openness(self.first.distance, self.setting.radius, self.setting.measure)
+        return fuzzy_openness(in_radii(self.first, self.setting.radius), self.setting.measure)
 
     def at_hits(self, values: np.ndarray) -> np.ndarray:
         """(n, 3), 0 where nothing was hit."""
@@ -179,7 +183,7 @@ INTEGRANDS = {
 def integrate(
     setting: Setting, points: Points, rays: int, names: Iterable[str], random: np.random.Generator
 ) -> dict[str, np.ndarray]:
-    """The mean of each integrand over `rays` rays a point, (n, channels) float32, and `standard_error` (n,) of `open`."""
+    """The mean of each integrand over `rays` rays a point, (n, channels) and `standard_error`, that of `open`."""
     integrands: Mapping[str, Integrand] = {name: INTEGRANDS[name] for name in names}
     needs_hits = setting.falloff > 0 or any(integrand.needs_hits for integrand in integrands.values())
     sums = {name: np.zeros((len(points), one.channels), np.float32) for name, one in integrands.items()}
@@ -194,7 +198,7 @@ def integrate(
                 sums[name] += integrand.evaluate(sample)
         squared_differences += (opens[0] - opens[1]) ** 2
     means = {name: total / np.float32(rays) for name, total in sums.items()}
-    return {**means, "standard_error": np.sqrt(squared_differences) / np.float32(rays)}
+    return {**means, "standard_error": np.sqrt(squared_differences)[:, None] / np.float32(rays)}
 
 
 def _cast(
@@ -203,12 +207,7 @@ def _cast(
     hits = None
     if needs_hits:
         hits = setting.world.first_hit(points.position, directions, setting.limit)
-        squared = np.square(hits.distance / np.float32(setting.radius)) if np.isfinite(setting.radius) else None
-        if squared is not None:
-            blocked = influence(squared, setting.falloff)
-        else:
-            blocked = (hits.triangle >= 0).astype(np.float32)
-        open = 1 - blocked
+        open = 1 - influence(in_radii(hits, setting.radius) ** 2, setting.falloff)
     else:
         open = (~setting.world.occluded(points.position, directions, setting.limit)).astype(np.float32)
     return Sample(setting, points, directions, open, hits, random)

@@ -1,4 +1,4 @@
-"""Lights with ray-traced, hard shadows, and the environment: the NumPy twins of glsl/lib/light.glsl and environment.glsl."""
+"""Lights with ray-traced, hard shadows, and the environment: twins of glsl/lib/light.glsl and environment.glsl."""
 
 from collections.abc import Iterable
 

@@ -12,6 +12,9 @@ from .world import World
 # The G-buffer's normals are half floats: three components, each rounded by up to 2^-12. A normal this close to the
 # triangle's is the triangle's, and rays along a flat surface do not dip into it.
 HALF_ROUNDING = 1e-3
+# A ray through a pixel's centre and the rasteriser agree on the triangle when the plane passes within this share (1/n)
+# of a pixel's width. Measured on a scanned mesh at 960×540: 99.9 % of the pixels lie within 1/8000.
+SAME_PLANE = 16
 EPSILON = float(np.finfo(np.float32).eps)
 
 
@@ -58,16 +61,17 @@ def surface_points(frame: Frame, scene: Scene, view: View, world: World) -> Poin
     pixel_width = depth * 2 * view.camera.tan_half_fov(view.size)[1] / view.size[1]
     # what the rasteriser's float32 transform may add, far from the origin
     rounding = 8 * EPSILON * (np.abs(scene.bounds).max() + np.linalg.norm(eye + world.centre))
-    tolerance = pixel_width + rounding
+    tolerance = pixel_width / SAME_PLANE + rounding
 
     geometric = world.normals[hits.triangle].astype(np.float64)
     geometric *= -np.sign((geometric * directions).sum(axis=1, keepdims=True))
     height = ((positions - world.corners[hits.triangle, 0]) * geometric).sum(axis=1)
-    same = (hits.triangle >= 0) & (np.abs(height) <= tolerance)
+    facing = (shading * geometric).sum(axis=1) > 0
+    same = (hits.triangle >= 0) & (np.abs(height) <= tolerance) & facing
     geometric[~same], height[~same] = shading[~same], 0.0
     flat = same & (np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING)
     shading[flat] = geometric[flat]
-    lift = np.where(same, world.lift - height, tolerance)
+    lift = np.where(same, world.lift - height, pixel_width + rounding)
     albedo = frame["albedo"].reshape(-1, 3)[pixel]
     position = (positions + geometric * lift[:, None]).astype(np.float32)
     return Points(pixel, position, shading.astype(np.float32), albedo)

@@ -20,11 +20,13 @@ from ..scene import Scene
 from ..version import __version__
 from ..view import View
 from . import cache as disk
+from .buffers import BUFFERS
 from .casters import Engine
 from .hemisphere import strata
 from .integrals import Measure, Setting
-from .points import surface_points
-from .tracing import BUFFERS, trace
+from .picture import over_environment, shown, spread
+from .points import Points, surface_points
+from .tracing import trace
 from .world import World
 
 DEFAULT_SIZE = (640, 360)
@@ -70,7 +72,7 @@ def reference(
       σ = 1/radius); `transfer`: W = O / (1 - (1/π) ∫ (1 - μ) a cosθ dω), a the blockers' albedo (Umenhoffer, Tóth and
       Szirmay-Kalos 2009, eq. 6); `transfer_multibounce`: the same by path tracing under a sky of 1, at most `bounces`
       reflections (what is still enclosed then is black), where a segment longer than the radius sees the sky;
-    - `direct`: the lights, with hard shadows; `radiance` and `image`: direct + ambient + indirect, shown as a render is.
+    - `direct`: the lights, with hard shadows; `radiance` and `image`: direct + ambient + indirect, as rendered.
 
     `engine`: embree, numpy (tiny scenes), or auto. Results are kept on disk (`AOLAB_CACHE`, else the platform's cache
     folder) by their content, unless `cache` is False. `progress` shows a bar; None shows it on a terminal.
@@ -112,12 +114,26 @@ def reference(
         assert scene.environment is not None  # Scene fills it in
         world = World(scene, engine)
         setting = Setting(world, scene.environment, scene.lights, radius, falloff, measure, bounces)
-        arrays = trace(setting, surface_points(surfaces, scene, view, world), view, rays, seed, wanted, progress)
+        needed = {"radiance" if name == "image" else name for name in wanted}
+        points = surface_points(surfaces, scene, view, world)
+        traced = trace(setting, points, rays, seed, [name for name in BUFFERS if name in needed], progress)
+        arrays = _pictures(traced, points, surfaces.mask, setting, view, wanted)
         if cache:
             disk.store(name, arrays)
     info["frame_ms"] = (perf_counter() - start) * 1e3
     own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
     return Frame({**own, **arrays}, {"reference": info["frame_ms"]}, info)
+
+
+def _pictures(
+    traced: dict[str, np.ndarray], points: Points, mask: np.ndarray, setting: Setting, view: View, wanted: list[str]
+) -> dict[str, np.ndarray]:
+    """(H, W[, channels]) from values at points; radiance over the environment, and the image of it."""
+    full = {name: spread(values, points.pixel, view, BUFFERS[name].background) for name, values in traced.items()}
+    if "radiance" in full:
+        full["radiance"] = over_environment(full["radiance"], mask, setting.environment, view)
+        full["image"] = shown(full["radiance"])
+    return {name: full[name] for name in wanted}
 
 
 def _reach(
@@ -138,10 +154,11 @@ def _reach(
 
 def _checked(buffers: Iterable[str], rays: int, measure: str, bounces: int, radius: float) -> list[str]:
     """The wanted buffers in the table's order, after all arguments have been checked, before any work is done."""
+    known = [*BUFFERS, "image"]
     wanted = [buffers] if isinstance(buffers, str) else list(buffers)
     for name in wanted:
-        if name not in BUFFERS:
-            raise ParameterError(f"the reference has no buffer '{name}'{suggestion(name, BUFFERS)}")
+        if name not in known:
+            raise ParameterError(f"the reference has no buffer '{name}'{suggestion(name, known)}")
     next(strata(rays))
     if measure not in get_args(Measure):
         raise ParameterError(f"measure = {measure!r} is unknown{suggestion(str(measure), get_args(Measure))}")
@@ -149,4 +166,4 @@ def _checked(buffers: Iterable[str], rays: int, measure: str, bounces: int, radi
         raise ParameterError(f"bounces = {bounces!r} is not a whole number from 0 on")
     if np.isinf(radius) and measure != "classical" and {"obscurance", "transfer"} & set(wanted):
         raise ParameterError(f"measure = '{measure}' needs a radius; without one there is only 'classical'")
-    return [name for name in BUFFERS if name in wanted]
+    return [name for name in known if name in wanted]

@@ -74,7 +74,7 @@ class _Surfaces:
     def __init__(self, instances: tuple[Instance, ...]) -> None:
         meshes = [instance.mesh for instance in instances]
         counts = [len(mesh.faces) for mesh in meshes]
-        base = [np.float32((*mesh.material.base_color, mesh.material.alpha)) for mesh in meshes]
+        base = [np.array((*mesh.material.base_color, mesh.material.alpha), np.float32) for mesh in meshes]
         if any(mesh.colors is not None for mesh in meshes):  # (t, 3, 4): a colour a corner
             corner_colors = [
                 np.broadcast_to(np.float32(1), (len(m.faces), 3, 4)) if m.colors is None else m.colors[m.faces]
@@ -88,14 +88,14 @@ class _Surfaces:
         self._textures: list[Texture] = list(textures)
         numbers = {texture: i for i, texture in enumerate(self._textures)}
         of_mesh = [numbers.get(m.material.texture, -1) if m.material.texture else -1 for m in meshes]
-        self._texture = np.repeat(np.int32(of_mesh), counts)
+        self._texture = np.repeat(np.array(of_mesh, np.int32), counts)
         self._uv = None
         if self._textures:
             self._uv = np.concatenate([
                 np.zeros((len(m.faces), 3, 2), np.float32) if m.uv is None else m.uv[m.faces] for m in meshes
             ])  # fmt: skip
         cutoffs = [-1.0 if m.material.alpha_cutoff is None else m.material.alpha_cutoff for m in meshes]
-        self._cutoff = np.repeat(np.float32(cutoffs), counts)
+        self._cutoff = np.repeat(np.array(cutoffs, np.float32), counts)
         self.has_holes = max(cutoffs) > 0
 
     @cached_property

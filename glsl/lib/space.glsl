@@ -18,9 +18,9 @@ bool isBackground(float viewZ) {
     return viewZ < -3.0e38;
 }
 
-// How far to lift a point off its surface, along the normal, before asking what blocks it: `bias`, but at least a
-// pixel's width there. A texel's depth is that of its centre, half a pixel away from where it is asked for; lifted this
-// far, a plane cannot block itself.
-float liftOff(float bias, vec3 viewPos, vec4 rayFromPixel) {
-    return max(bias, -viewPos.z * rayFromPixel.x);
+// How far to lift a point off its surface, along the normal, before asking what blocks it within `reach` (scene units):
+// `bias`, but at least a pixel's width at the farthest point asked for. A texel's depth is that of its centre, up to half
+// a pixel to each side of where it is asked for, which moves a plane by at most 0.71 pixels: it cannot block itself.
+float liftOff(float bias, float reach, vec3 viewPos, vec4 rayFromPixel) {
+    return max(bias, (reach - viewPos.z) * rayFromPixel.x);
 }

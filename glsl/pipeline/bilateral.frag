@@ -25,15 +25,19 @@ void main() {
     filtered = texelFetch(source, pixel, 0);
     if (isBackground(centreZ)) return;
 
-    vec3 centrePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel);
+    float normalDotRay = dot(normal, ray);
+    float planeOffset = normalDotRay * -centreZ;
+    // the rays of a row, or column, differ in one component: by this much a pixel
+    float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     vec4 sum = filtered;
     float weights = 1.0;
     for (int i = -REACH; i <= REACH; ++i) {
         if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
-        vec3 otherPos = viewPosAt(vec2(other) + 0.5, texelFetch(viewZ, other, 0).r, ray_from_pixel);
-        float plane = planeDistance(centrePos, normal, otherPos) / PLANE_TOLERANCE;
+        float otherZ = texelFetch(viewZ, other, 0).r;
+        float plane = planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ);
         float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
         float weight = (abs(i) == REACH ? 0.5 : 1.0) * max(1.0 - plane * plane, 0.0) * pow(alike, 8.0);
         if (weight > 0.0) {  // the background's plane distance is infinite

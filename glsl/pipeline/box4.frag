@@ -21,15 +21,19 @@ void main() {
     filtered = texelFetch(source, pixel, 0);
     if (isBackground(centreZ)) return;
 
-    vec3 centrePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel);
+    float normalDotRay = dot(normal, ray);
+    float planeOffset = normalDotRay * -centreZ;
+    // the rays of a row, or column, differ in one component: by this much a pixel
+    float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     vec4 sum = filtered;
     float count = 1.0;
     for (int i = -1; i <= 2; ++i) {
         if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
-        vec3 otherPos = viewPosAt(vec2(other) + 0.5, texelFetch(viewZ, other, 0).r, ray_from_pixel);
-        if (planeDistance(centrePos, normal, otherPos) < PLANE_TOLERANCE) {
+        float otherZ = texelFetch(viewZ, other, 0).r;
+        if (planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ) < 1.0) {
             sum += texelFetch(source, other, 0);
             count += 1.0;
         }

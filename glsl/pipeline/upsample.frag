@@ -27,6 +27,7 @@ void main() {
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    float planeOffset = dot(normal, centrePos);
     vec4 sum = vec4(0.0), nearest = upsampled;
     float weights = 0.0, nearestGap = 1e30;
     for (int i = 0; i < 4; ++i) {
@@ -34,10 +35,11 @@ void main() {
         ivec2 other = clamp(corner + step, ivec2(0), last);
         float otherZ = texelFetch(smallViewZ, other, 0).r;
         vec4 value = texelFetch(source, other, 0);
-        float gap = planeDistance(centrePos, normal, viewPosAt(vec2(other) + 0.5, otherZ, small_ray_from_pixel));
+        vec3 otherRay = viewPosAt(vec2(other) + 0.5, -1.0, small_ray_from_pixel);
+        float gap = planeDistance(dot(normal, otherRay), otherZ, planeOffset, centreZ);
         vec2 bilinear = mix(1.0 - part, part, vec2(step));
         float alike = max(dot(normal, texelFetch(smallNormal, other, 0).xyz), 0.0);
-        float weight = (bilinear.x * bilinear.y + 1e-3) * max(1.0 - gap / PLANE_TOLERANCE, 0.0) * pow(alike, 8.0);
+        float weight = (bilinear.x * bilinear.y + 1e-3) * max(1.0 - gap, 0.0) * pow(alike, 8.0);
         if (weight > 0.0) {
             sum += weight * value;
             weights += weight;

@@ -138,11 +138,11 @@ def test_two_materials_share_one_image(gltf):
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float32])
 def test_vertex_colours_are_linear(gltf, dtype, has_material):
     full = 1 if dtype == np.float32 else np.iinfo(dtype).max
-    gltf.attribute("COLOR_0", np.array([[full, 0, 0, full]] * 3, dtype))
+    gltf.attribute("COLOR_0", np.array([[full, full * 0.2, 0, full]] * 3).astype(dtype))
     if has_material:
         gltf.material(pbrMetallicRoughness={"baseColorFactor": [0.5, 0.5, 0.5, 1]})
     mesh = aolab.load(gltf.glb()).instances[0].mesh
-    np.testing.assert_array_equal(mesh.colors, [[1, 0, 0, 1]] * 3)
+    np.testing.assert_allclose(mesh.colors, [[1, 0.2, 0, 1]] * 3)
     assert mesh.material.base_color == ((0.5,) * 3 if has_material else (1, 1, 1))
 
 

@@ -240,7 +240,7 @@ def test_stl_truncated(tmp_path):
     path = tmp_path / "sphere.stl"
     trimesh.creation.icosphere(3).export(path)
     path.write_bytes(path.read_bytes()[:-100])
-    refuse(path, "cannot read .* as STL")
+    refuse(path, "is truncated or no STL file: 63984 of 64084 bytes")
 
 
 # before reading
@@ -277,7 +277,7 @@ def test_an_empty_file(tmp_path, suffix):
 def test_rubbish(tmp_path, suffix):
     path = tmp_path / f"model{suffix}"
     path.write_bytes(b"this is no model, whatever its name says" * 10)
-    refuse(path, "cannot read|corrupt|not a GLB|no triangles", Error)
+    refuse(path, "cannot read|corrupt|not a GLB|truncated", Error)
 
 
 @pytest.mark.parametrize("source", ["https://example.org/model.glb", "file:///tmp/model.glb"])

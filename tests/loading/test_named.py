@@ -123,9 +123,13 @@ class TestNamed:
 
     def test_description(self):
         described = describe_scene("toasters")
-        assert described.summary == "Toasters that march."
+        assert described.summary == "Of the module."
         assert described.parameters["at"] == (0.0, 0.0)
         assert list(described.parameters) == ["time", "detail", "lit", "at", "kind", "seed"]
+
+    def test_description_of_a_file_without_docstring(self, scenes):
+        (scenes / "toasters.py").write_text(TOASTERS.replace('"""Of the module."""', ""))
+        assert describe_scene("toasters").summary == "Toasters that march."
 
     def test_meshes_that_a_scene_keeps_are_shared_between_calls(self):
         first, second = aolab.load("toasters"), aolab.load("toasters?time=1")

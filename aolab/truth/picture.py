@@ -1,0 +1,32 @@
+"""From buffers at points to pictures: the NumPy twins of glsl/lib/color.glsl and glsl/pipeline/compose.frag."""
+
+import numpy as np
+
+from ..environment import Environment
+from ..view import View
+from .lighting import environment_radiance
+from .points import pixel_rays
+
+
+def spread(values: np.ndarray, pixel: np.ndarray, view: View, background: float) -> np.ndarray:
+    """(H, W) or (H, W, channels): `values` (n, channels) at the row-major indices `pixel`."""
+    width, height = view.size
+    image = np.full((height * width, values.shape[1]), background, np.float32)
+    image[pixel] = values
+    return image.reshape(height, width, -1) if values.shape[1] > 1 else image.reshape(height, width)
+
+
+def over_environment(radiance: np.ndarray, mask: np.ndarray, environment: Environment, view: View) -> np.ndarray:
+    """(H, W, 3) `radiance`, and the environment where `mask` is False."""
+    behind = pixel_rays(view)[~mask.reshape(-1)] @ view.camera.view_from_world[:3, :3]
+    result = radiance.copy()
+    result[~mask] = environment_radiance(environment, behind)
+    return result
+
+
+def shown(radiance: np.ndarray) -> np.ndarray:
+    """(H, W, 3) uint8 sRGB: the filmic curve at exposure 1, as a render shows itself by default."""
+    curve = radiance * (2.51 * radiance + 0.03) / (radiance * (2.43 * radiance + 0.59) + 0.14)
+    linear = curve.clip(0, 1)
+    encoded = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
+    return np.round(encoded * 255).astype(np.uint8)

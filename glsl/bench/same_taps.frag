@@ -1,0 +1,42 @@
+// The least that SSAO's taps can cost: the same texels in the same order, fetched and added up. No occluder test.
+// What ssao.frag takes beyond this is what its answer costs; `aolab bench` prints the ratio.
+
+#include "lib/space.glsl"
+#include "lib/sampling.glsl"
+
+const int directions;
+const int steps;
+
+uniform float radius;
+uniform float bias;
+uniform vec4 kernel[directions];
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform vec2 texel_size;
+uniform vec4 ray_from_pixel;
+uniform vec4 pixel_from_ray;
+
+out float sum;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    sum = 1.0;
+    if (isBackground(centreZ)) return;
+
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
+    viewPos += normal * liftOff(bias * radius, radius, viewPos, ray_from_pixel);
+    int set = interleavedSet(pixel);
+    mat3 frame = interleavedFrame(normal, set) * radius;
+
+    sum = 0.0;
+    for (int i = 0; i < directions; ++i) {
+        vec3 way = frame * kernel[i].xyz;
+        float offset = interleavedOffset(kernel[i].w, set);
+        for (int j = 0; j < steps; ++j) {
+            vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
+            sum += texture(viewZ, pixelAt(samplePos, pixel_from_ray) * texel_size).r;
+        }
+    }
+}
