@@ -29,14 +29,16 @@ def main() -> None:
     warnings.simplefilter("always", Notice)
     warnings.showwarning = _show_notice
     try:
-        app(arguments, prog_name="aolab")
-    except Error as error:
-        if debug:
-            raise
-        print(f"aolab: {error}", file=sys.stderr)
-        sys.exit(2)
+        sys.exit(app(arguments, prog_name="aolab", standalone_mode=False))
     except KeyboardInterrupt:
         sys.exit(130)
+    except Exception as error:
+        # typer's own errors of usage know how to say themselves; where they live has moved between its versions
+        tell = getattr(error, "format_message", None)
+        if debug or not (tell or isinstance(error, Error)):
+            raise
+        print(f"aolab: {tell() if tell else error}", file=sys.stderr)
+        sys.exit(2)
 
 
 def _show_notice(message: Any, category: type[Warning], filename: str, lineno: int, *_: Any) -> None:

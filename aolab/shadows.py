@@ -14,9 +14,9 @@ from .lights import DirectionalLight, Light, PointLight, SpotLight
 from .scene import Scene
 from .view import matrix_bytes
 
-TILE = 1024  # pixels a side of a light's map; SSDO (2009) used 512, for 256 lights
+FINE, COARSE = 2048, 1024  # pixels a side of a light's map: fine for up to four of them. SSDO (2009) used 512
 MAX_TILES = 32  # mat4 uniforms: OpenGL 3.3 grants 1024 floats, and these take 512
-SLOPE_BIAS, CONSTANT_BIAS = 2.0, 4.0  # glPolygonOffset: texels of slope, and steps of depth resolution
+SLOPE_BIAS, CONSTANT_BIAS = 3.0, 4.0  # glPolygonOffset: the filter reaches 1.25 texels in x and in y
 
 # right-handed looks of a point light's six faces, in the order of `cubeFace` in glsl/lib/light.glsl
 _CUBE = (
@@ -92,7 +92,8 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
             f"{len(matrices)} shadow tiles; the limit is {MAX_TILES}. Set shadow=False on the lesser lights"
         )
     side = max(1, ceil(sqrt(len(matrices))))
-    width = side * TILE if matrices else 1
+    tile = (FINE if len(matrices) <= 4 else COARSE) if matrices else 1
+    width = side * tile
     atlas = gl.depth_texture((width, width))
     atlas.compare_func = "<="
     atlas.filter = (moderngl.LINEAR, moderngl.LINEAR)
@@ -106,7 +107,7 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
         gl.enable_only(moderngl.DEPTH_TEST)
         gl.polygon_offset = SLOPE_BIAS, CONSTANT_BIAS
         for index, matrix in enumerate(matrices):
-            framebuffer.viewport = (index % side * TILE, index // side * TILE, TILE, TILE)
+            framebuffer.viewport = (index % side * tile, index // side * tile, tile, tile)
             uniforms = {"clip_from_world": matrix_bytes(matrix), "base_color": (1.0,) * 4, "alpha_cutoff": 0.0}
             program.set(uniforms)
             painter.bind_unit(program, "base_texture", 0)

@@ -1,8 +1,8 @@
 """A city of towers under a blue sky and a low yellow sun.
 
 S3HO 2012, Fig. 6: seen with directional occlusion, the side of a tower that is away from the sun keeps a blue and
-darker shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow against
-the towers' height, so the radius shows: small ones darken the kerbs, large ones whole streets.
+darker shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow
+against the towers' height, so the radius shows: small ones darken the kerbs, large ones whole streets.
 One unit is ten metres. The same `seed` gives the same city.
 """
 

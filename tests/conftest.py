@@ -1,13 +1,19 @@
 """What the tests share: the GL context, a lab, small scenes with known answers, real models."""
 
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import moderngl
+import numpy as np
 import pytest
 import small_scenes
 
 import aolab
-from aolab.gl import context
+from aolab.draw import Painter
+from aolab.gl import context, texture
+from aolab.gl.program import Programs
+from aolab.gl.texture import Pool
+from aolab.passes import Pass
 
 CHECKOUT = Path(__file__).parents[1]
 
@@ -55,3 +61,27 @@ def models() -> Path:
     if not folder.is_dir():
         pytest.skip(f"no folder of real models at {folder}")
     return folder
+
+
+@pytest.fixture(scope="session")
+def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
+    """Evaluates GLSL: `glsl("lib/space.glsl", "result.xyz = viewPosAt(x.xy, x.z, a);", x, a=(1, 2, 3, 4))`.
+
+    Runs the statements once for each row of `x` (n, 4) and returns `result` (n, 4), both float32; keywords are vec4 uniforms.
+    """
+    painter = Painter(Programs(), Pool(), {})
+
+    def evaluate(include: str, statements: str, x: np.ndarray, **uniforms: Sequence[float]) -> np.ndarray:
+        x = np.asarray(x, np.float32)
+        assert x.shape[1:] == (4,)
+        declared = "".join(f"uniform vec4 {name};\n" for name in uniforms)
+        shader = (
+            f'#include "{include}"\nuniform sampler2D rows;\n{declared}out vec4 value;\nvoid main() {{\n'
+            f"vec4 x = texelFetch(rows, ivec2(gl_FragCoord.xy), 0), result = vec4(0.0);\n{statements}\nvalue = result;\n}}\n"
+        )
+        size = len(x), 1
+        rows = {"rows": texture.make(size, "RGBA32F", x.tobytes())}
+        made = painter.run(Pass("glsl", shader, {"value": "RGBA32F"}), rows, uniforms, size)
+        return texture.read(made["value"])[0]
+
+    return evaluate

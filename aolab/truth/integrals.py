@@ -51,7 +51,7 @@ def fuzzy_openness(distance: np.ndarray, measure: Measure) -> np.ndarray:
 
 def in_radii(hits: Hits, radius: float) -> np.ndarray:
     """(n,): distances as multiples of the radius, infinite where nothing was hit, also when the radius is."""
-    return np.where(hits.triangle >= 0, hits.distance / np.float32(radius), np.float32(np.inf))
+    return np.divide(hits.distance, np.float32(radius), out=hits.distance.copy(), where=hits.triangle >= 0)
 
 
 @dataclass

@@ -81,7 +81,7 @@ def reference(
     start = perf_counter()
     scene = load(scene)
     radius, falloff = _reach(scene, radius, falloff, like)
-    wanted = _checked(buffers, rays, measure, bounces, radius)
+    wanted = _checked(buffers, rays, seed, measure, bounces, radius)
     surfaces = shared_lab().render(scene, "none", size=size, camera=camera)
     camera = camera or scene.camera
     assert camera is not None  # Scene frames itself
@@ -152,7 +152,7 @@ def _reach(
     return (np.inf if radius is None else float(radius)), float(falloff)
 
 
-def _checked(buffers: Iterable[str], rays: int, measure: str, bounces: int, radius: float) -> list[str]:
+def _checked(buffers: Iterable[str], rays: int, seed: int, measure: str, bounces: int, radius: float) -> list[str]:
     """The wanted buffers in the table's order, after all arguments have been checked, before any work is done."""
     known = [*BUFFERS, "image"]
     wanted = [buffers] if isinstance(buffers, str) else list(buffers)
@@ -162,6 +162,8 @@ def _checked(buffers: Iterable[str], rays: int, measure: str, bounces: int, radi
     next(strata(rays))
     if measure not in get_args(Measure):
         raise ParameterError(f"measure = {measure!r} is unknown{suggestion(str(measure), get_args(Measure))}")
+    if not isinstance(seed, int) or seed < 0:
+        raise ParameterError(f"seed = {seed!r} is not a whole number from 0 on")
     if not isinstance(bounces, int) or bounces < 0:
         raise ParameterError(f"bounces = {bounces!r} is not a whole number from 0 on")
     if np.isinf(radius) and measure != "classical" and {"obscurance", "transfer"} & set(wanted):

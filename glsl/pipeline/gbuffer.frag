@@ -19,8 +19,10 @@ layout(location = 2) out vec4 albedo;
 void main() {
     vec4 base = base_color * color * texture(base_texture, uv);
     if (base.a < alpha_cutoff) discard;
-    // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this
+    // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
+    // derivatives, which at a horizon reach over to what lies behind the eye
     vec3 faceNormal = cross(dFdx(viewPos), dFdy(viewPos));
+    faceNormal = faceforward(faceNormal, viewPos, faceNormal);
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     albedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);

@@ -23,10 +23,10 @@ def scene(*meshes, **options):
 WALL_HEIGHT = 1.0
 
 
-def wall_scene(floor_albedo=0.8, wall_albedo=0.8, **options):
+def wall_scene(floor_albedo=0.8, wall_albedo=0.8, half_width=200, **options):
     """A floor (y = 0) seen from above, beside a wall (x = 0, facing +x) that is as good as infinitely wide."""
-    floor = quad((2, 0, 0), (0, 0, 200), (2, 0, 0), floor_albedo)
-    wall = quad((0, WALL_HEIGHT / 2, 0), (0, WALL_HEIGHT / 2, 0), (0, 0, 200), wall_albedo)
+    floor = quad((2, 0, 0), (0, 0, half_width), (2, 0, 0), floor_albedo)
+    wall = quad((0, WALL_HEIGHT / 2, 0), (0, WALL_HEIGHT / 2, 0), (0, 0, half_width), wall_albedo)
     options.setdefault("camera", aolab.Camera(eye=(1.6, 3, 0), target=(1.2, 0, 0), up=(0, 0, -1), fov=20))
     return scene(floor, wall, **options)
 
@@ -35,9 +35,9 @@ CEILING = 1.0
 
 
 def ceiling_scene(albedo=0.8, **options):
-    """A floor (y = 0) under a ceiling (y = 1), seen from between them."""
-    floor = quad((0, 0, 0), (0, 0, 30), (30, 0, 0), albedo)
-    ceiling = quad((0, CEILING, 0), (0, 0, 30), (30, 0, 0), albedo)
+    """A floor (y = 0) under a ceiling (y = 1), seen from between them; they reach 4 units beyond what is seen."""
+    floor = quad((0, 0, 0), (0, 0, 5), (5, 0, 0), albedo)
+    ceiling = quad((0, CEILING, 0), (0, 0, 5), (5, 0, 0), albedo)
     camera = aolab.Camera(eye=(0, 0.9, 0), target=(0, 0, 0), up=(0, 0, -1), fov=40)
     return scene(floor, ceiling, camera=camera, **options)
 

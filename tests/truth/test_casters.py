@@ -23,7 +23,7 @@ def test_embree_and_numpy_agree_ray_by_ray(limit):
     triangles, origins, directions = random_rays()
     embree, plain = (one(triangles).first_hit(origins, directions, limit) for one in (EmbreeCaster, NumpyCaster))
     hit = plain.triangle >= 0
-    assert 0.05 < hit.mean() < 0.95
+    assert 100 < hit.sum() < len(hit) - 100
     # a ray along an edge may fall on either side in float32
     assert (embree.triangle != plain.triangle).sum() <= 2
     same = hit & (embree.triangle == plain.triangle)

@@ -13,11 +13,14 @@ SIZE = (64, 48)
 
 
 def assert_within_standard_error(frame, exact):
-    """Over all pixels: the mean deviation in standard errors is 0 and its spread 1, to 3 standard errors of theirs."""
-    z = ((frame["visibility"] - exact) / frame["standard_error"])[frame.mask & (frame["standard_error"] > 0)]
-    assert len(z) > 1000
-    assert abs(z.mean()) < 3 / np.sqrt(len(z))
-    assert 0.9 < z.std() < 1.1
+    """The mean error over the image is 0 within 3 standard errors, and the stated errors are as large as the true."""
+    known = frame.mask & np.isfinite(exact + 0 * frame["viewZ"])
+    error = (frame["visibility"].astype(np.float64) - exact)[known]
+    stated = frame["standard_error"][known].astype(np.float64)
+    assert len(error) > 1000
+    assert 0 < np.sqrt((stated**2).mean()) < 0.05
+    assert abs(error.mean()) < 3 * np.sqrt((stated**2).sum()) / len(error)
+    assert 0.9 < (error**2).mean() / (stated**2).mean() < 1.1
 
 
 def image_of(values, frame):
@@ -87,7 +90,7 @@ def test_plane_under_a_sphere():
 @pytest.mark.parametrize("falloff", [0.0, 0.5, 1.0])
 def test_falloff_under_a_ceiling(falloff):
     """cos²θ is uniform under cosθ/π, the ceiling is at d = c / cosθ: ∫ clamp((1 - k/s) / f) ds, k = (c/R)²."""
-    k = 0.25
+    k = 0.3  # no edge of a ring of strata: there the answer would be exact
     frame = reference(
         ceiling_scene(),
         size=SIZE,

@@ -23,12 +23,16 @@ def test_ambient_under_a_constant_sky_is_albedo_times_sky_times_visibility(fallo
 
 
 def test_ambient_of_an_open_plane_is_the_environments_irradiance():
-    sky = aolab.Environment.sky(sun_direction=(0.3, 1, 0.2))
+    sky = aolab.Environment.sky()
     camera = aolab.Camera(eye=(0, 3, 1), target=(0, 0, 0))
     plane = scene(quad((0, 0, 0), (0, 0, 9), (9, 0, 0)), camera=camera, environment=sky)
     frame = reference(plane, size=SIZE, rays=256, buffers="ambient")
-    expected = frame["albedo"][24, 32] / np.pi * sky.irradiance(np.array([0, 1.0, 0]))
-    np.testing.assert_allclose(frame["ambient"].mean(axis=(0, 1)), expected, rtol=0.02)  # nine coefficients are 1 % off
+    height, width = sky.radiance.shape[:2]
+    cosine = np.cos(np.pi * (np.arange(height) + 0.5) / height)
+    weights = np.maximum(cosine, 0) * np.sqrt(1 - cosine**2) * 2 * np.pi**2 / (height * width)
+    irradiance = np.einsum("h,hwc->c", weights, sky.radiance)
+    expected = frame["albedo"][24, 32] / np.pi * irradiance
+    np.testing.assert_allclose(frame["ambient"].mean(axis=(0, 1)), expected, rtol=3e-3)
 
 
 def test_the_environment_is_read_bilinearly_and_around_the_seam():
@@ -86,13 +90,13 @@ def test_shadows_are_hard_and_where_they_belong():
     ],
 )
 def test_direct_light_is_that_of_a_render(light):
-    lit = wall_scene(lights=(light,))
+    lit = wall_scene(lights=(light,), half_width=3)
     render = aolab.render(lit, "none", size=SIZE)
     truth = reference(lit, size=SIZE, rays=2, buffers="direct")
     assert truth["direct"].max() > 0.05
     difference = np.abs(truth["direct"] - render["direct"])
     assert np.median(difference[truth.mask]) < 2e-3 * truth["direct"].max()
-    assert (difference.max(axis=-1) > 0.02 * truth["direct"].max()).mean() < 0.05  # the shadow map's soft edges
+    assert (difference.max(axis=-1) > 0.02 * truth["direct"].max()).mean() < 0.1  # the shadow map's soft edges
 
 
 def test_a_light_without_shadow_shines_through():
@@ -104,7 +108,7 @@ def test_a_light_without_shadow_shines_through():
 def test_radiance_is_the_sum_over_the_environment_and_the_image_shows_it():
     lit = ceiling_scene(
         environment=aolab.Environment.sky(), lights=(aolab.PointLight((0.5, 0.5, 0), (0.2, 0.2, 0.2)),)
-    ).replace(camera=aolab.Camera(eye=(0, 0.5, 40), target=(0, 0.5, 0), fov=30))
+    ).replace(camera=aolab.Camera(eye=(0, 3, 18), target=(0, 0.5, 0), fov=40))
     names = ("direct", "ambient", "indirect", "radiance", "image")
     frame = reference(lit, size=SIZE, rays=16, buffers=names)
     assert 0.005 < frame.mask.mean() < 0.9

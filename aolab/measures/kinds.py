@@ -1,0 +1,51 @@
+"""What a buffer holds: its unit, and the picture of it on which PSNR, SSIM and FLIP are defined."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..truth.picture import shown
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of quantity, its `unit`, and how it is looked at.
+
+    `picture` is what PSNR, SSIM and FLIP compare, values in [0, 1]: "direct", the values themselves as a screen would
+    show them; "tone mapped", linear radiance as a render shows itself (filmic, exposure 1, sRGB), for which FLIP is
+    HDR-FLIP of the linear values; None where they make no picture, and PSNR, SSIM and FLIP have no meaning.
+    `angular`: vectors of which the direction counts.
+    """
+
+    unit: str
+    picture: Literal["direct", "tone mapped"] | None = None
+    angular: bool = False
+
+
+SHARE = Kind("", "direct")
+DISPLAYED = Kind("sRGB, 0 to 1", "direct")
+RADIANCE = Kind("radiance", "tone mapped")
+DIRECTION = Kind("degrees", angular=True)
+LENGTH = Kind("scene units")
+NUMBERS = Kind("")
+
+KINDS = {
+    **dict.fromkeys(("visibility", "obscurance", "transfer", "transfer_multibounce", "albedo"), SHARE),
+    **dict.fromkeys(("direct", "ambient", "indirect", "radiance"), RADIANCE),
+    **dict.fromkeys(("viewNormal", "bent_normal"), DIRECTION),
+    "viewZ": LENGTH,
+    "image": DISPLAYED,
+}
+
+
+def kind_of(name: str) -> Kind:
+    """The kind of the buffer `name`, or of the one that `name` is the unfiltered estimate of; NUMBERS if unknown."""
+    return KINDS.get(name.removesuffix("_raw"), NUMBERS)
+
+
+def picture(values: np.ndarray, kind: Kind) -> np.ndarray:
+    """(H, W, C) float64 in [0, 1]: what PSNR, SSIM and FLIP look at. `values` (H, W, C) of a kind that has a picture."""
+    if kind.picture == "tone mapped":
+        return shown(np.maximum(values, 0)) / 255.0
+    return np.clip(values, 0, 1).astype(np.float64)

@@ -1,0 +1,102 @@
+"""Directives for what the code already says: a module's facts, its parameters, the scenes, the shell's help."""
+
+import inspect
+from typing import Any
+
+import typer
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from aolab.cli import app as shell
+from aolab.loading import describe_scene, scene_names
+from aolab.modules import MODULES, Module
+from aolab.parameters import describe
+
+HELP_COLUMNS = 92  # what a page shows without scrolling
+
+
+class Markdown(SphinxDirective):
+    """A directive that writes Markdown."""
+
+    optional_arguments = 1
+
+    def text(self) -> str:
+        raise NotImplementedError
+
+    @property
+    def module(self) -> type[Module]:
+        """The module that the argument names."""
+        if self.arguments[0] not in MODULES:
+            raise self.error(f"no module '{self.arguments[0]}'; known: {', '.join(MODULES)}")
+        return MODULES[self.arguments[0]]
+
+    def run(self) -> list[nodes.Node]:
+        return self.parse_text_to_nodes(self.text())
+
+
+class ModuleFacts(Markdown):
+    """What a module says of itself: docstring, paper, shader, outputs."""
+
+    def text(self) -> str:
+        module = self.module
+        outputs = ", ".join(f"`{name}` ({format})" for name, format in module.outputs.items())
+        facts = {"Name": f"`{module.name}`", "Paper": module.paper, "Shader": f"`glsl/{module.shader}`", "Output": outputs}
+        return f"{inspect.getdoc(module)}\n\n" + _table(["", ""], [[name, fact] for name, fact in facts.items()])
+
+
+class ParameterTable(Markdown):
+    """Every parameter of a module, from its statement."""
+
+    def text(self) -> str:
+        keys = ("name", "type", "default", "range", "unit", "description")
+        rows = [[described[key] for key in keys] for described in (describe(self.module, f) for f in self.module.model_fields)]
+        return _table([key.capitalize() for key in keys], [[f"`{row[0]}`", row[1], f"`{row[2]}`", *row[3:]] for row in rows])
+
+
+class ModuleTable(Markdown):
+    """The modules that there are; the argument is the way to their pages."""
+
+    def text(self) -> str:
+        folder = "".join(self.arguments)
+        rows = [[f"[`{name}`]({folder}{name}.md)", module.title, module.paper] for name, module in MODULES.items()]
+        return _table(["Name", "Method", "Paper"], rows)
+
+
+class SceneTable(Markdown):
+    """The scenes that there are, with their parameters."""
+
+    def text(self) -> str:
+        rows = []
+        for scene in map(describe_scene, scene_names()):
+            parameters = ", ".join(f"`{name}={value}`" for name, value in scene.parameters.items())
+            rows.append([f"`{scene.name}`", scene.summary, parameters])
+        return _table(["Name", "What it shows", "Parameters, with defaults"], rows)
+
+
+class ShellHelp(Markdown):
+    """`aolab --help`, and the help of every command."""
+
+    def text(self) -> str:
+        group = typer.main.get_group(shell)  # a click command with its subcommands
+        pages = [f"## {name}\n\n{_help(command, f'aolab {name}')}" for name, command in group.commands.items()]
+        return "\n\n".join([_help(group, "aolab"), *pages])
+
+
+def _help(command: Any, name: str) -> str:
+    context = command.context_class(command, info_name=name, terminal_width=HELP_COLUMNS, max_content_width=HELP_COLUMNS)
+    return f"```text\n{command.get_help(context)}\n```"
+
+
+def _table(head: list[str], rows: list[list[str]]) -> str:
+    cells = [[cell.replace("|", "\\|") for cell in row] for row in rows]
+    return "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *cells])
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    app.add_directive("module", ModuleFacts)
+    app.add_directive("parameters", ParameterTable)
+    app.add_directive("modules", ModuleTable)
+    app.add_directive("scenes", SceneTable)
+    app.add_directive("shell-help", ShellHelp)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}
