@@ -1,6 +1,6 @@
 """Parameters, stated once: validation, command line, uniforms, sliders and docs derive from the statement."""
 
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
@@ -35,7 +35,7 @@ class Parameters(BaseModel):
             except ValidationError as error:
                 raise ParameterError(_explain(type(self), error, values)) from None
 
-    def replace(self, **changes: object) -> "Parameters":
+    def replace(self, **changes: object) -> Self:
         """The same with some values changed, validated again."""
         return type(self)(**{**self.model_dump(), **changes})
 

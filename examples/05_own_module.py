@@ -1,7 +1,6 @@
 """Write your own module: parameters, a shader, and it is used like a built-in one."""
 
 from pathlib import Path
-from typing import ClassVar
 
 import aolab
 
@@ -9,8 +8,8 @@ import aolab
 class Creases(aolab.Module):
     """Darkens pixels whose neighbours' normals open towards them: curvature, the cheapest of all ambient occlusions."""
 
-    name: ClassVar[str] = "creases"
-    shader: ClassVar[str] = """
+    name = "creases"
+    shader = """
         #include "lib/space.glsl"
 
         uniform sampler2D viewZ;

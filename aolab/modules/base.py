@@ -87,14 +87,14 @@ class Module(Parameters):
     def resolved(self, scene: Scene) -> Self:
         """The same with every `auto` made a number for this scene."""
         if getattr(self, "radius", None) == AUTO:
-            return self.replace(radius=AUTO_RADIUS_SHARE * scene.radius)  # type: ignore[return-value]
+            return self.replace(radius=AUTO_RADIUS_SHARE * scene.radius)
         return self
 
 
 def find(module: "str | Module | type[Module]", modules: Mapping[str, type[Module]], **parameters: object) -> Module:
     """A module by name, class or instance, with these parameters. Raises `ParameterError` for an unknown one."""
     if isinstance(module, Module):
-        return module.replace(**parameters) if parameters else module  # type: ignore[return-value]
+        return module.replace(**parameters) if parameters else module
     if isinstance(module, str):
         if module not in modules:
             raise ParameterError(f"no module '{module}'{suggestion(module, modules)}")

@@ -1,7 +1,5 @@
 """Screen-space ambient occlusion over the hemisphere."""
 
-from typing import ClassVar
-
 from ..kernels import cosine_hemisphere
 from ..parameters import parameter
 from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
@@ -14,10 +12,10 @@ class SSAO(Module):
     to rays of length `radius` against the one layer that the camera sees.
     """
 
-    name: ClassVar[str] = "ssao"
-    title: ClassVar[str] = "Screen-space ambient occlusion"
-    paper: ClassVar[str] = "Mittring 2007, Finding Next Gen: CryEngine 2; hemisphere form: Filion and McNaughton 2008"
-    shader: ClassVar[str] = "ssao.frag"
+    name = "ssao"
+    title = "Screen-space ambient occlusion"
+    paper = "Mittring 2007, Finding Next Gen: CryEngine 2; hemisphere form: Filion and McNaughton 2008"
+    shader = "ssao.frag"
 
     radius: Radius = "auto"
     directions: Directions = 16

@@ -110,6 +110,7 @@ def reference(
     made_of = {name: info[name] for name in ("aolab", "renderer", "camera", "size", "seed")}
     name = disk.key(scene, buffers=wanted, **settings, **made_of) if cache else ""
     arrays = disk.load(name) if cache else None
+    info["cached"] = arrays is not None
     if arrays is None:
         assert scene.environment is not None  # Scene fills it in
         world = World(scene, engine)

@@ -33,6 +33,12 @@ def test_the_second_call_reads_what_the_first_one_wrote(cache_folder):
 
 
 def test_whatever_changes_the_result_changes_the_entry(cache_folder):
+    mesh = quad((0, 0, 0), (1, 0, 0), (0, 1, 0))
+    camera = aolab.Camera((0, 0, 5), (0, 0, 0))
+    moved = [
+        aolab.Scene((aolab.Instance(mesh, transform),), camera=camera)
+        for transform in (np.eye(4), np.diag([2.0, 1, 1, 1]))
+    ]
     textures = [aolab.Texture(np.full((1, 1, 4), value, np.uint8)) for value in (100, 200)]
     painted = [scene(quad((0, 0, 0), (1, 0, 0), (0, 1, 0), material=aolab.Material(texture=t))) for t in textures]
     calls = [
@@ -48,7 +54,7 @@ def test_whatever_changes_the_result_changes_the_entry(cache_folder):
         {"what": wall_scene(environment=aolab.Environment.constant(0.5))},
         {"what": wall_scene(lights=(aolab.PointLight((1, 1, 1)),))},
         {"what": wall_scene(lights=(aolab.PointLight((1, 1, 2)),))},
-        *({"what": one} for one in painted),
+        *({"what": one} for one in [*painted, *moved]),
     ]
     for number, arguments in enumerate(calls, start=1):
         what = arguments.pop("what", wall_scene())

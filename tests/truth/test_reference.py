@@ -8,7 +8,7 @@ from aolab.errors import ParameterError
 from aolab.truth import reference
 from aolab.truth.tracing import CHUNK
 
-from .rooms import quad, scene, wall_scene
+from .rooms import ceiling_scene, quad, scene, wall_scene
 
 SIZE = (64, 48)
 
@@ -48,6 +48,12 @@ def test_the_seed_decides_and_threads_do_not():
     )
     np.testing.assert_array_equal(one, same)
     assert (one != other).mean() > 0.05
+
+
+def test_chunks_do_not_repeat_each_others_noise():
+    noise = reference(ceiling_scene(), size=(2 * CHUNK // 128, 128), rays=16, radius=1.9, buffers="visibility")
+    first, second = np.split(noise["visibility"].reshape(-1), 2)
+    assert (first != second).mean() > 0.3
 
 
 def test_like_takes_radius_and_falloff_from_the_module():

@@ -6,7 +6,7 @@ import pytest
 from aolab.errors import ParameterError
 from aolab.truth import reference
 
-from .rooms import CEILING, ceiling_scene, wall_scene
+from .rooms import CEILING, ceiling_scene, wall_scene, world_positions
 
 SIZE = (48, 32)
 MEASURES = ("classical", "linear", "sqrt", "exponential")
@@ -59,6 +59,18 @@ def test_without_bounces_only_the_sky_arrives():
     )
     visibility = np.nan_to_num(frame["visibility"])
     np.testing.assert_allclose(frame["transfer_multibounce"][..., 0], visibility, atol=1e-6)
+
+
+def test_path_tracing_ends_at_the_radius_whatever_the_measure():
+    arguments = {"size": SIZE, "rays": 32, "radius": 0.5, "buffers": "transfer_multibounce"}
+    classical, exponential = (
+        reference(wall_scene(), measure=measure, **arguments)["transfer_multibounce"]
+        for measure in ("classical", "exponential")
+    )
+    assert classical.min() < 0.95
+    np.testing.assert_allclose(exponential.mean(), classical.mean(), rtol=1e-3)
+    far = world_positions(reference(wall_scene(), **arguments))[:, 0] > 0.51
+    assert (exponential[classical[..., 0] > 0].reshape(-1, 3)[far] == 1).all()
 
 
 def test_a_fuzzy_measure_needs_a_radius():
