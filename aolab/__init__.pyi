@@ -1,6 +1,7 @@
 from .api import render as render
 from .camera import Camera as Camera
 from .environment import Environment as Environment
+from .decomposition import explain as explain
 from .errors import ContextError as ContextError
 from .errors import Error as Error
 from .errors import FileError as FileError
@@ -26,4 +27,5 @@ from .passes import Pass as Pass
 from .scene import Instance as Instance
 from .scene import Scene as Scene
 from .sheet import contact_sheet as contact_sheet
+from .truth import reference as reference
 from .version import __version__ as __version__

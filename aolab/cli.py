@@ -4,12 +4,15 @@ import json
 import sys
 import warnings
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from . import options
 from .errors import Error, Notice, ParameterError
+
+if TYPE_CHECKING:
+    from .command import Job
 
 app = typer.Typer(
     name="aolab",
@@ -66,6 +69,45 @@ def render(
     stats: options.Stats = None,
 ) -> None:
     """Render SCENE and write the picture."""
+    job = _job(scene, like, module, set_, occluders, (eye, target, fov))
+    job.choose(size=size, seed=seed, accumulate=accumulate, exposure=exposure, tone_map=tone_map)
+    job.render(output, buffers, stats)
+    print(output)
+
+
+@app.command()
+def reference(
+    scene: options.Scene = None,
+    module: options.Module = None,
+    set_: options.Set = None,
+    size: options.Size = None,
+    seed: options.Seed = None,
+    eye: options.Eye = None,
+    target: options.Target = None,
+    fov: options.Fov = None,
+    like: options.Like = None,
+    output: options.Output = Path("reference.png"),
+    buffers: options.Buffers = None,
+    stats: options.Stats = None,
+    rays: options.Rays = 256,
+    radius: options.Radius = None,
+) -> None:
+    """Ray-trace SCENE, with the radius and falloff of a module or a radius of its own, and write the picture."""
+    job = _job(scene, like, module, set_, None, (eye, target, fov))
+    job.choose(size=size, seed=seed)
+    job.trace(rays, radius, output, buffers, stats)
+    print(output)
+
+
+def _job(
+    scene: str | None,
+    like: Path | None,
+    module: str | None,
+    set_: list[str] | None,
+    occluders: str | None,
+    camera: tuple[str | None, str | None, float | None],
+) -> "Job":
+    """The job that the options describe; those that are not given leave what the picture or the scene says."""
     from .command import Job
 
     job = Job.like(like) if like else Job()
@@ -78,10 +120,8 @@ def render(
     job.parameters |= dict(_key_value(text) for text in set_ or [])
     if occluders is not None:
         job.parameters["occluders"] = occluders
-    job.place_camera(eye, target, fov)
-    job.choose(size=size, seed=seed, accumulate=accumulate, exposure=exposure, tone_map=tone_map)
-    job.run(output, buffers, stats)
-    print(output)
+    job.place_camera(*camera)
+    return job
 
 
 def _key_value(text: str) -> tuple[str, Any]:

@@ -68,46 +68,75 @@ class Job:
             if value is not None:
                 setattr(self, name, value)
 
-    def run(self, output: Path, buffers: Path | None = None, stats: Path | None = None) -> Frame:
+    def render(self, output: Path, buffers: Path | None = None, stats: Path | None = None) -> Frame:
         """Render and write. Everything that can be refused is refused before the work."""
-        if output.suffix.lower() != ".png":
-            raise FileError(f"cannot write {output}: images are written as .png")
-        for path in filter(None, (output, buffers, stats)):
-            check_writable(path)
+        _check_outputs(output, buffers, stats)
         module = typed(self.module, self.parameters)
+        scene, notes = self._load()
+        lab = Lab(self.size)
+        view = {"camera": self._camera(scene), "seed": self.seed, "accumulate": self.accumulate}
+        display = {"exposure": self.exposure, "tone_map": self.tone_map}
+        frame = lab.render(scene, module, **view, **display)
+        if stats:
+            frame = lab.render(scene, module, **view, **display)  # the first one compiled the shaders
+        _write(frame, notes, output, buffers, stats)
+        return frame
+
+    def trace(
+        self, rays: int, radius: float | None, output: Path, buffers: Path | None = None, stats: Path | None = None
+    ) -> Frame:
+        """Ray-trace and write; the module gives radius and falloff, unless `radius` is said."""
+        from .truth import reference
+        from .truth.reference import DEFAULT_BUFFERS
+
+        _check_outputs(output, buffers, stats)
+        module = typed(self.module, self.parameters)
+        scene, notes = self._load()
+        reach: dict[str, Any] = {"like": module} if radius is None else {"radius": radius}
+        frame = reference(
+            scene,
+            size=self.size,
+            camera=self._camera(scene),
+            seed=self.seed,
+            rays=rays,
+            buffers=(*DEFAULT_BUFFERS, "image"),
+            **reach,
+        )
+        _write(frame, notes, output, buffers, stats)
+        return frame
+
+    def _load(self) -> tuple[Scene, list[str]]:
         from .loading import load
 
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always", Notice)
             scene = load(self.scene)
-        lab = Lab(self.size)
-        frame = self.render(lab, scene, module)
-        if stats:
-            frame = self.render(lab, scene, module)  # the first one compiled the shaders
-            frame.notes = [*(str(note.message) for note in caught), *frame.notes]
         for note in caught:
             warnings.warn(note.message, note.category, stacklevel=1)
-        frame.save(output)
-        if buffers:
-            frame.save_buffers(buffers)
-        if stats:
-            with replacing(stats) as file:
-                file.write((json.dumps(frame.stats(), indent=2) + "\n").encode())
-        return frame
+        return scene, [str(note.message) for note in caught]
 
-    def render(self, lab: Lab, scene: Scene, module: Module) -> Frame:
+    def _camera(self, scene: Scene) -> Camera:
         camera = self.camera or scene.camera
         assert camera is not None  # Scene frames itself
         changes = {key: getattr(self, key) for key in ("eye", "target", "fov") if getattr(self, key) is not None}
-        return lab.render(
-            scene,
-            module,
-            camera=replace(camera, **changes),
-            seed=self.seed,
-            accumulate=self.accumulate,
-            exposure=self.exposure,
-            tone_map=self.tone_map,
-        )
+        return replace(camera, **changes)
+
+
+def _check_outputs(output: Path, *others: Path | None) -> None:
+    if output.suffix.lower() != ".png":
+        raise FileError(f"cannot write {output}: images are written as .png")
+    for path in filter(None, (output, *others)):
+        check_writable(path)
+
+
+def _write(frame: Frame, notes: list[str], output: Path, buffers: Path | None, stats: Path | None) -> None:
+    frame.notes = [*notes, *frame.notes]
+    frame.save(output)
+    if buffers:
+        frame.save_buffers(buffers)
+    if stats:
+        with replacing(stats) as file:
+            file.write((json.dumps(frame.stats(), indent=2) + "\n").encode())
 
 
 def typed(name: str, parameters: dict[str, Any]) -> Module:

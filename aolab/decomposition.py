@@ -17,6 +17,7 @@ from .modules import MODULES, Module, find
 from .scene import Scene
 
 CONVERGED = 64  # frames: noise falls to 1/8 of one frame's
+BACKGROUND = 153  # grey, in none of the colours of an error
 MARGIN = 0.5  # of the image's height, drawn around it to know what lies off the screen
 
 # each part is the difference of two neighbours in this chain of renders, from the module's frame to the truth
@@ -44,7 +45,7 @@ class Explanation:
 
     @property
     def residual(self) -> float:
-        """The largest difference between the error and the sum of its parts; float32 rounding, or something is wrong."""
+        """The largest difference between the error and the sum of its parts: rounding, or something is wrong."""
         return float(np.nanmax(np.abs(self.error - sum(self.parts.values()))))
 
     def table(self) -> dict[str, dict[str, float]]:
@@ -63,7 +64,9 @@ class Explanation:
 
     def picture(self) -> Image.Image:
         """The result, the truth, the error and its parts, side by side; errors on one scale, zero in the middle."""
-        from .measures.pictures import signed
+        from matplotlib import colormaps
+
+        from .measures.pictures import SIGNED
         from .sheet import contact_sheet, gray
 
         limit = max(float(np.nanpercentile(np.abs(self.error), 99)), 1e-6)
@@ -74,7 +77,8 @@ class Explanation:
         ]
         for name, values in {"error": self.error, **self.parts}.items():
             caption = f"{name}: rmse {table[name]['rmse']:.4f}, {100 * table[name]['share']:.0f} % (±{limit:.2g})"
-            pictures.append((caption, signed(_scalar(values), limit)))
+            colors = colormaps[SIGNED](_scalar(values) / (2 * limit) + 0.5, bytes=True)[..., :3]
+            pictures.append((caption, np.where(_like(self.frame.mask, colors), colors, np.uint8(BACKGROUND))))
         return contact_sheet(pictures)
 
     def __str__(self) -> str:

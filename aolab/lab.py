@@ -1,5 +1,6 @@
 """The lab: keeps programs, textures and geometry between frames, and runs the passes of each."""
 
+import operator
 import warnings
 from dataclasses import asdict
 from time import perf_counter
@@ -38,6 +39,7 @@ class Lab:
         self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
         self._samplers = {"viewZ": surfaces.border_sampler()}
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
+        self._sizes: set[Size] = set()
 
     def reload(self) -> list[str]:
         """Compile the shaders whose files changed; returns their names.
@@ -93,8 +95,23 @@ class Lab:
         assert camera is not None  # Scene frames itself
         module = module.resolved(scene)
         view = View(camera, size, scene.bounds)
+        self._make_room({view.size, view.scaled(module.scale).size})
         painter = Painter(self._programs, self._pool, self._samplers)
+        try:
+            return self._frame(painter, scene, module, view, seed, frames, display)
+        except BaseException:
+            self._pool.give_back(painter.lent)  # no frame will
+            raise
 
+    def _make_room(self, sizes: set[Size]) -> None:
+        """After a change of resolution, free the textures of the old one that no frame holds."""
+        if sizes != self._sizes:
+            self._pool.trim(sizes)
+            self._sizes = sizes
+
+    def _frame(
+        self, painter: Painter, scene: Scene, module: Module, view: View, seed: int, frames: int, display: Display
+    ) -> Frame:
         shadows = self._shadow_maps(painter, scene)
         buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
         buffers |= self._estimate(painter, module, buffers, view, seed, frames)
@@ -107,8 +124,8 @@ class Lab:
             "scene": scene.source,
             "module": module.name or type(module).__name__,
             "parameters": module.model_dump(),
-            "camera": asdict(camera),
-            "size": list(size),
+            "camera": asdict(view.camera),
+            "size": list(view.size),
             "seed": seed,
             "accumulate": frames,
             **asdict(display),
@@ -173,9 +190,13 @@ def _as_scene(scene: Any) -> Scene:
 
 
 def _whole(name: str, value: int, least: int) -> int:
-    if not isinstance(value, int) or value < least:
+    try:
+        number = operator.index(value)  # NumPy's whole numbers too
+    except TypeError:
+        number = least - 1
+    if number < least:
         raise ParameterError(f"{name} = {value!r} is not a whole number from {least} on")
-    return value
+    return number
 
 
 def _display(exposure: float, tone_map: ToneMap) -> Display:

@@ -26,3 +26,5 @@ Like = Annotated[Path | None, Option(metavar="FILE.png", help="Make this picture
 Output = Annotated[Path, Option("-o", "--output", metavar="FILE.png", help="The picture to write.")]
 Buffers = Annotated[Path | None, Option(metavar="FILE.npz", help="Write every buffer by name.")]
 Stats = Annotated[Path | None, Option(metavar="FILE.json", help="Write parameters and timings of a warm frame.")]
+Rays = Annotated[int, Option(help="Rays a pixel, even.")]
+Radius = Annotated[float | None, Option(help="Reach of occlusion, in scene units. Default: the module's.")]

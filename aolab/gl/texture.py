@@ -1,6 +1,7 @@
 """Textures that passes draw into: made by format name, lent from a pool, read back the right side up."""
 
 import math
+import operator
 from collections import defaultdict
 
 import moderngl
@@ -25,7 +26,10 @@ Size = tuple[int, int]
 
 def check_size(size: Size) -> Size:
     """(width, height) as the driver can draw it; raises `ParameterError` with the driver's limit."""
-    width, height = (int(value) for value in size)
+    try:
+        width, height = (operator.index(value) for value in size)
+    except (TypeError, ValueError):
+        raise ParameterError(f"size = {size!r} is not two whole numbers, (width, height)") from None
     limit = context.get().info["GL_MAX_TEXTURE_SIZE"]
     if not (1 <= width <= limit and 1 <= height <= limit):
         raise ParameterError(f"size = {width}x{height}: each side must be from 1 to {limit} pixels on this driver")
@@ -85,9 +89,9 @@ class Pool:
             self._framebuffers[key] = context.get().framebuffer(textures, depth)
         return self._framebuffers[key]
 
-    def trim(self, size: Size) -> None:
-        """Free what nobody holds and is not of `size`: after a change of resolution."""
-        for key in [key for key in self._free if key[0] != size]:
+    def trim(self, sizes: set[Size]) -> None:
+        """Free what nobody holds and is of none of these sizes."""
+        for key in [key for key in self._free if key[0] not in sizes]:
             gone = {texture.glo for texture in self._free.pop(key)}
             for names in [names for names in self._framebuffers if gone & set(names)]:
                 del self._framebuffers[names]

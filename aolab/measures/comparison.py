@@ -4,7 +4,7 @@ import base64
 import json
 import math
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
 from io import BytesIO
 from os import PathLike
@@ -14,18 +14,11 @@ import numpy as np
 from PIL import Image
 
 from ..errors import Notice, ParameterError, suggestion
-from ..frame import Frame
 from ..output import replacing
-from . import regions
+from .inputs import Buffers, common, label, regions, size_of
 from .kinds import Kind, kind_of, picture
 from .metrics import Measures, angles, differences, psnr
 from .perception import flip_map, ssim_map
-
-Buffers = Frame | Mapping[str, np.ndarray]
-
-SURFACES = ("viewZ", "viewNormal", "albedo")  # a render and its reference share them: compared only where asked for
-_HARMONICS = ("sh0", "sh1", "sh2", "sh3")  # four coefficients each; together they are `sh`, and its bands
-_BAND_OF = np.repeat([0, 1, 2, 3], [1, 3, 5, 7])
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,16 +152,10 @@ def compare(
     `flip=False` leaves out the slowest measure: 2 seconds a megapixel on two cores, for radiance a few times that.
     Raises `ParameterError` for sizes that differ, no common buffer, or nothing but background.
     """
-    wanted = _wanted(a, b, buffers)
-    pairs = {name: (_array(a, name, "a"), _array(b, name, "b")) for name in wanted}
-    pairs = _with_harmonics(pairs, explicit=buffers is not None)
-    size = _common_size(pairs)
-    view_z = [_view_z(one, size) for one in (a, b)]
-    surface = _surface([z for z in view_z if z is not None], size)
-    where = _regions(a, b, view_z[1] if view_z[1] is not None else view_z[0], surface, size, border)
-    names = (_label(a, "a"), _label(b, "b"))
+    pairs = common(a, b, buffers)
+    where = regions(a, b, size_of(pairs), border)
     compared = {name: _compare_buffer(name, *pair, where, flip) for name, pair in pairs.items()}
-    return Comparison(names, compared, where)
+    return Comparison((label(a, "a"), label(b, "b")), compared, where)
 
 
 def _compare_buffer(
@@ -221,116 +208,8 @@ def _measure(difference: np.ndarray, maps: dict[str, np.ndarray], mask: np.ndarr
 
 
 def _filled(values: np.ndarray, reference: np.ndarray, foreground: np.ndarray) -> np.ndarray:
-    """`values` with the reference's mean colour behind them: the same in both, and no edge that either would not have."""
+    """`values` with the reference's mean colour in the background: the same in result and reference."""
     return np.where(foreground[..., None], values, reference[foreground].mean(axis=0, dtype=np.float64))
-
-
-def _names(one: Buffers) -> list[str]:
-    if isinstance(one, Frame):
-        return one.buffers
-    if isinstance(one, Mapping):
-        return list(one)
-    raise ParameterError(f"cannot compare a {type(one).__name__}: give a Frame, or a mapping of names to arrays")
-
-
-def _label(one: Buffers, otherwise: str) -> str:
-    return str(one.info.get("module", otherwise)) if isinstance(one, Frame) else otherwise
-
-
-def _wanted(a: Buffers, b: Buffers, buffers: Iterable[str] | str | None) -> list[str]:
-    in_a, in_b = _names(a), _names(b)
-    shared = [name for name in in_a if name in in_b]
-    if not shared:
-        raise ParameterError(f"no common buffer: a has {', '.join(in_a) or 'none'}; b has {', '.join(in_b) or 'none'}")
-    if buffers is None:
-        results = [name for name in shared if name not in (*SURFACES, "standard_error")]
-        if not results:
-            raise ParameterError(f"no common result, only {', '.join(shared)}: name them in `buffers` to compare those")
-        return sorted(results, key=lambda name: (name != "visibility", in_a.index(name)))
-    chosen = [buffers] if isinstance(buffers, str) else list(buffers)
-    if not chosen:
-        raise ParameterError(f"buffers = {chosen} names nothing; both have {', '.join(shared)}")
-    for name in chosen:
-        if name not in shared and not (name == "sh" and set(_HARMONICS) <= set(shared)):
-            missing = " and ".join(label for label, known in (("a", in_a), ("b", in_b)) if name not in known)
-            raise ParameterError(f"{missing} has no buffer '{name}'{suggestion(name, shared)}")
-    return [part for name in chosen for part in (_HARMONICS if name == "sh" else (name,))]
-
-
-def _array(one: Buffers, name: str, who: str) -> np.ndarray:
-    """(H, W, C) float32; 8-bit values as shares of 255."""
-    values = np.asarray(one[name])
-    if values.ndim not in (2, 3) or not values.size or not np.issubdtype(values.dtype, np.number):
-        raise ParameterError(
-            f"buffer '{name}' of {who} has shape {values.shape} and type {values.dtype}, not numbers (H, W) or (H, W, C)"
-        )
-    scaled = values / np.float32(255) if values.dtype == np.uint8 else values.astype(np.float32)
-    return scaled[..., None] if values.ndim == 2 else scaled
-
-
-def _with_harmonics(
-    pairs: dict[str, tuple[np.ndarray, np.ndarray]], explicit: bool
-) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """sh0 .. sh3, four coefficients each, as `sh` and its bands, where all are there and four channels wide."""
-    parts = [pairs.get(name) for name in _HARMONICS]
-    if any(part is None or part[0].shape[2] != 4 or part[1].shape[2] != 4 for part in parts):
-        return pairs
-    a, b = (np.concatenate([part[side] for part in parts if part], axis=2) for side in (0, 1))
-    rest = {name: pair for name, pair in pairs.items() if name not in _HARMONICS}
-    bands = {f"sh_band{band}": (a[..., band == _BAND_OF], b[..., band == _BAND_OF]) for band in range(4)}
-    return rest | {"sh": (a, b)} | bands
-
-
-def _common_size(pairs: dict[str, tuple[np.ndarray, np.ndarray]]) -> tuple[int, int]:
-    """(width, height) of all buffers."""
-    first = next(iter(pairs.values()))[0].shape
-    for name, (a, b) in pairs.items():
-        if a.shape != b.shape or a.shape[:2] != first[:2]:
-            raise ParameterError(f"buffer '{name}': sizes differ, a is {_shape(a)}, b is {_shape(b)}")
-    return first[1], first[0]
-
-
-def _shape(array: np.ndarray) -> str:
-    return f"{array.shape[1]}×{array.shape[0]} with {array.shape[2]} channel{'s' if array.shape[2] > 1 else ''}"
-
-
-def _view_z(one: Buffers, size: tuple[int, int]) -> np.ndarray | None:
-    if "viewZ" not in _names(one):
-        return None
-    view_z = np.asarray(one["viewZ"])
-    if view_z.shape != size[::-1]:
-        raise ParameterError(f"viewZ has shape {view_z.shape}, the buffers are {size[0]}×{size[1]}")
-    return view_z
-
-
-def _surface(depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray:
-    """(H, W) bool: where all of the depths are of a surface."""
-    mask = np.ones(size[::-1], bool)
-    for view_z in depths:
-        mask &= np.isfinite(view_z)
-    if not mask.any():
-        raise ParameterError(f"nothing to compare: all {mask.size} pixels are background in viewZ")
-    return mask
-
-
-def _regions(
-    a: Buffers, b: Buffers, view_z: np.ndarray | None, surface: np.ndarray, size: tuple[int, int], px: float | None
-) -> dict[str, np.ndarray]:
-    reach = _reach(a, b, view_z) if px is None else px
-    if not np.all(np.asarray(reach) >= 0):
-        raise ParameterError(f"border = {px!r} is not a number of pixels from 0 on")
-    found = {"border": surface & regions.border(size, reach if reach is not None else regions.BORDER_SHARE * min(size))}
-    if view_z is not None:
-        found["silhouettes"] = surface & regions.silhouettes(view_z)
-        found["thin"] = surface & regions.thin_occluders(view_z)
-    interior = surface.copy()
-    for mask in found.values():
-        interior &= ~mask
-    return {"all": surface, **found, "interior": interior}
-
-
-def _reach(a: Buffers, b: Buffers, view_z: np.ndarray | None) -> np.ndarray | float:
-    raise NotImplementedError
 
 
 def _plain(measures: dict[str, float]) -> dict[str, float | str | None]:
@@ -345,7 +224,9 @@ def _plain(measures: dict[str, float]) -> dict[str, float | str | None]:
 def _table(name: str, unit: str, measures: dict[str, Measures]) -> list[str]:
     """Lines: a row a region, a column a measure that any region has."""
     columns = [
-        field.name for field in fields(Measures) if any(not math.isnan(getattr(m, field.name)) for m in measures.values())
+        field.name
+        for field in fields(Measures)
+        if any(not math.isnan(getattr(m, field.name)) for m in measures.values())
     ]
     width = 11
     head = f"{name}, {unit}" if unit else name

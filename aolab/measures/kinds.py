@@ -45,7 +45,7 @@ def kind_of(name: str) -> Kind:
 
 
 def picture(values: np.ndarray, kind: Kind) -> np.ndarray:
-    """(H, W, C) float64 in [0, 1]: what PSNR, SSIM and FLIP look at. `values` (H, W, C) of a kind that has a picture."""
+    """(H, W, C) float64 in [0, 1]: what PSNR and SSIM look at. `values` (H, W, C), of a kind with a picture."""
     if kind.picture == "tone mapped":
         return shown(np.maximum(values, 0)) / 255.0
     return np.clip(values, 0, 1).astype(np.float64)

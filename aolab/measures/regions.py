@@ -4,7 +4,7 @@ All depth tests are made on nearness, 1 / distance: it is linear over the image 
 """
 
 import numpy as np
-from scipy.ndimage import binary_dilation, grey_opening
+from scipy.ndimage import binary_dilation, find_objects, grey_opening, label
 
 GAP = 0.05  # share of the distance by which depth jumps at a gap: five times what the filters call one surface
 SILHOUETTE_PX = 2  # what a 4×4 filter reaches across
@@ -53,11 +53,16 @@ def _beside_gap(near: np.ndarray) -> np.ndarray:
 
 
 def thin_occluders(view_z: np.ndarray, width: int = THIN_PX) -> np.ndarray:
-    """(H, W) bool: surfaces narrower than `width` pixels before something farther by `GAP`, and all within `width` of them.
+    """(H, W) bool: surfaces narrower than `width` pixels before something farther by `GAP`, and what is close to them.
 
-    They are what a grey-value opening of nearness with a square of `width` pixels removes (Serra's white top-hat). What
-    is near them belongs to the region, since a wrong guess at their thickness shows there.
+    They are what a grey-value opening of nearness with a disc of that diameter removes (Serra's white top-hat); pieces
+    shorter than `width` are corners of wider things, and do not count. All within `width` pixels of them belongs to the
+    region, since a wrong guess at their thickness shows there.
     """
     near = nearness(view_z)
-    thin = near - grey_opening(near, (width, width)) > GAP * near
+    steps = np.arange(width) - (width - 1) / 2
+    disc = steps**2 + steps[:, None] ** 2 <= (width / 2) ** 2
+    pieces, _ = label(near - grey_opening(near, footprint=disc) > GAP * near, np.ones((3, 3)))
+    long = [max(side.stop - side.start for side in box) >= width for box in find_objects(pieces)]
+    thin = np.array([False, *long])[pieces]
     return binary_dilation(thin, np.ones((3, 3)), iterations=width) & np.isfinite(view_z)

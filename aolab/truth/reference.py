@@ -105,7 +105,6 @@ def reference(
         "size": list(view.size),
         "seed": seed,
         "triangles": scene.triangles,
-        "notes": [],
     }
     made_of = {name: info[name] for name in ("aolab", "renderer", "camera", "size", "seed")}
     name = disk.key(scene, buffers=wanted, **settings, **made_of) if cache else ""
@@ -121,9 +120,9 @@ def reference(
         arrays = _pictures(traced, points, surfaces.mask, setting, view, wanted)
         if cache:
             disk.store(name, arrays)
-    info["frame_ms"] = (perf_counter() - start) * 1e3
+    milliseconds = (perf_counter() - start) * 1e3
     own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
-    return Frame({**own, **arrays}, {"reference": info["frame_ms"]}, info)
+    return Frame({**own, **arrays}, {"reference": milliseconds}, info, milliseconds)
 
 
 def _pictures(

@@ -1,7 +1,5 @@
 """Equations as MathML, which browsers draw by themselves: no script, no network, and a screen reader can read it."""
 
-from html import escape
-
 from docutils import nodes
 from latex2mathml.converter import convert
 from sphinx.application import Sphinx
@@ -18,7 +16,7 @@ def block(translator: HTML5Translator, node: nodes.math_block) -> None:
     translator.body.append(translator.starttag(node, "div", CLASS="math equation"))
     if node["number"]:
         number = get_node_equation_number(translator, node)
-        translator.body.append(f'<span class="eqno">({escape(number)})</span>')
+        translator.body.append(f'<span class="eqno">({number})</span>')
     translator.body.append(convert(node.astext(), display="block"))
     translator.body.append("</div>\n")
     raise nodes.SkipNode

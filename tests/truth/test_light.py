@@ -48,7 +48,7 @@ def test_the_environment_is_read_bilinearly_and_around_the_seam():
 
 @pytest.mark.parametrize("reach", [{}, {"radius": 2.0, "falloff": 0.8}])
 def test_one_bounce_from_an_evenly_lit_wall(reach):
-    """All of the wall has the same radiance, so the floor receives it in every blocked direction, as far as it blocks."""
+    """All of the wall has one radiance; the floor receives it in every blocked direction, as far as it blocks."""
     sun = aolab.DirectionalLight(direction=(-1, 0, 0), irradiance=(1.0, 2.0, 3.0))  # along the floor, onto the wall
     frame = reference(
         wall_scene(floor_albedo=0.5, wall_albedo=0.25, lights=(sun,)),

@@ -1,0 +1,60 @@
+"""`aolab compare`: from words to a sheet."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+from ..command import parse_size, typed
+from ..errors import FileError, ParameterError
+from ..modules import MODULES, Module
+from ..output import check_writable, replacing
+from .ranking import Entry, compare_modules, sheet
+
+
+def compare_command(
+    scene: str,
+    modules: str | None,
+    size: str,
+    rays: int,
+    radius: float | None,
+    buffer: str,
+    output: Path | None,
+    as_json: bool,
+) -> str:
+    """Compare, write the sheet to `output`, and return what is to be printed."""
+    if output is not None:
+        if output.suffix.lower() != ".png":
+            raise FileError(f"cannot write {output}: the sheet is written as .png")
+        check_writable(output)
+    chosen = list(MODULES) if modules is None else [parse_module(text) for text in modules.split(",")]
+    entries = compare_modules(scene, chosen, size=parse_size(size), rays=rays, radius=radius, buffer=buffer)
+    if output is not None:
+        with replacing(output) as file:
+            sheet(entries).save(file, "PNG")
+    if as_json:
+        return json.dumps([entry.to_dict() for entry in entries], indent=2, allow_nan=False)
+    return table(entries)
+
+
+def parse_module(text: str) -> Module:
+    """'ssao?directions=32&steps=4' as a module, parameters written as those of scenes are. Raises `ParameterError`."""
+    name, _, rest = text.strip().partition("?")
+    parameters: dict[str, Any] = {}
+    for pair in filter(None, rest.split("&")):
+        key, separator, value = pair.partition("=")
+        if not separator:
+            raise ParameterError(f"--modules {text}: write NAME?KEY=VALUE&KEY=VALUE, as in ssao?directions=32")
+        parameters[key.strip().replace("-", "_")] = value.strip()
+    return typed(name, parameters)
+
+
+def table(entries: list[Entry]) -> str:
+    """A line a module, best first."""
+    width = max(len(entry.label) for entry in entries)
+    columns = ("rmse", "bias", "p99", "ssim", "flip")
+    lines = [f"{'':<{width}}" + "".join(f"{name:>10}" for name in (*columns, "frame ms"))]
+    for entry in entries:
+        one = next(iter(entry.comparison.buffers.values()))
+        cells = [*(f"{getattr(one, name):>10.4f}" for name in columns), f"{entry.milliseconds:>10.1f}"]
+        lines.append(f"{entry.label:<{width}}" + "".join(cells))
+    return "\n".join(lines)

@@ -1,0 +1,124 @@
+"""Pictures of an error, with a scale that a person can read: result, reference, error, colour bar."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from PIL import Image
+
+from .comparison import BufferComparison
+from .kinds import picture
+
+# zero in the middle and white, more is red; or, for magnitudes, perceptually uniform from dark to bright
+SIGNED, MAGNITUDE = "RdBu_r", "viridis"
+BACKGROUND = "0.6"  # grey: in neither map
+DPI = 100
+PANEL_WIDTH = 260, 480  # pixels: smaller pictures are enlarged by whole numbers, larger ones reduced
+MARGIN, HEAD, BAR, TEXT, PER_LINE = 14, 46, 92, 250, 17  # pixels
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of the sheet: one comparison, a title and the text beside it."""
+
+    comparison: BufferComparison
+    title: str
+    text: str
+
+
+def comparison_picture(one: BufferComparison, names: tuple[str, str], limit: float | None = None) -> Image.Image:
+    """`result`, `reference` and error of one buffer; see `Comparison.picture`."""
+    return draw([Line(one, "", "")], f"{one.name}: {names[0]} against {names[1]}", names, limit)
+
+
+def draw(
+    lines: Sequence[Line], title: str, names: tuple[str, str] = ("result", "truth"), limit: float | None = None
+) -> Image.Image:
+    """Lines of result, reference, error and text, under one `title`, with one scale, whose colour bar is on the right.
+
+    All of `lines` show the same buffer. `limit` as in `Comparison.picture`, over all lines.
+    """
+    height, width = lines[0].comparison.foreground.shape
+    scale = max(1, -(-PANEL_WIDTH[0] // width)) if width < PANEL_WIDTH[0] else min(1, PANEL_WIDTH[1] / width)
+    panel = round(width * scale), max(1, round(height * scale))
+    text = TEXT if any(line.text for line in lines) else 0
+    line_height = max(panel[1], PER_LINE * max(line.text.count("\n") + 2 for line in lines), 120) + HEAD // 2
+    total = 3 * (panel[0] + MARGIN) + text + BAR + MARGIN, HEAD + len(lines) * line_height + MARGIN
+
+    figure = Figure((total[0] / DPI, total[1] / DPI), dpi=DPI, facecolor="#fafaf8")
+    canvas = FigureCanvasAgg(figure)
+
+    def box(x: float, y: float, w: float, h: float) -> tuple[float, float, float, float]:
+        """Pixels from the upper left corner as matplotlib counts."""
+        return x / total[0], 1 - (y + h) / total[1], w / total[0], h / total[1]
+
+    def write(x: float, y: float, words: str, **style: object) -> None:
+        figure.text(x / total[0], 1 - y / total[1], words, va="top", **style)  # type: ignore[arg-type]
+
+    one = lines[0].comparison
+    mappable = _scale([line.comparison for line in lines], limit)
+    write(MARGIN, 6, title, fontsize=10, weight="bold")
+    for index, line in enumerate(lines):
+        y = HEAD + index * line_height
+        heads = (f"{line.title or names[0]}", names[1], f"error, {names[0]} - {names[1]}" if one.signed else "error")
+        panels = (*_seen(line.comparison), _colored(line.comparison.error, mappable))
+        for column, (head, pixels) in enumerate(zip(heads, panels, strict=True)):
+            x = MARGIN + column * (panel[0] + MARGIN)
+            write(x, y - 17, head, fontsize=9)
+            axes = figure.add_axes(box(x, y, *panel), xticks=[], yticks=[])
+            axes.spines[:].set(color="0.75", linewidth=0.6)
+            axes.imshow(pixels, interpolation="nearest" if scale >= 1 else "antialiased", aspect="auto")
+        write(MARGIN + 3 * (panel[0] + MARGIN), y, line.text, fontsize=8.5, family="monospace", linespacing=1.3)
+    bar = figure.add_axes(box(total[0] - BAR, HEAD, 16, min(total[1] - HEAD - 2 * MARGIN, 420)))
+    _bar(figure, mappable, bar, lines)
+    canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> ScalarMappable:
+    magnitudes = np.concatenate([np.abs(one.error[np.isfinite(one.error)]) for one in comparisons])
+    if limit is None:
+        limit = float(np.percentile(magnitudes, 99)) or float(magnitudes.max())
+    limit = limit if limit > 0 else 1e-6  # nothing differs: any scale shows that
+    signed = comparisons[0].signed
+    colors = colormaps[SIGNED if signed else MAGNITUDE].with_extremes(bad=BACKGROUND)
+    return ScalarMappable(Normalize(-limit if signed else 0, limit), colors)
+
+
+def _bar(figure: Figure, mappable: ScalarMappable, axes, lines: Sequence[Line]) -> None:
+    one = lines[0].comparison
+    largest = max(float(np.nanmax(np.abs(line.comparison.error))) for line in lines)
+    beyond = largest > mappable.norm.vmax * (1 + 1e-6)  # type: ignore[operator]
+    bar = figure.colorbar(mappable, cax=axes, extend=("both" if one.signed else "max") if beyond else "neither")
+    bar.ax.tick_params(labelsize=8)
+    what = "error" if one.signed else "angle" if one.kind.angular else "norm of the error"
+    unit = f", {one.kind.unit}" if one.kind.unit else ""
+    bar.set_label(f"{one.name}: {what}{unit}" + (f" (largest: {largest:.3g})" if beyond else ""), fontsize=8.5)
+
+
+def _colored(error: np.ndarray, mappable: ScalarMappable) -> np.ndarray:
+    return mappable.to_rgba(np.ma.masked_invalid(error), bytes=True)[..., :3]
+
+
+def _seen(one: BufferComparison) -> tuple[np.ndarray, np.ndarray]:
+    """Result and reference as (H, W, 3) uint8: their pictures, or where they make none, their first channels as far as
+    the reference ranges."""  # fmt: skip
+    low, high = 0.0, 1.0
+    if not one.kind.picture:
+        known = one.reference[one.foreground][:, :3]
+        low, high = (-1.0, 1.0) if one.kind.angular else (float(known.min()), float(known.max()))
+    grey = round(float(BACKGROUND) * 255)
+
+    def seen(values: np.ndarray) -> np.ndarray:
+        values = values[..., :3] if values.shape[2] >= 3 and not one.name.startswith("sh") else values[..., :1]
+        values = np.nan_to_num(values)
+        shown = picture(values, one.kind) if one.kind.picture else ((values - low) / max(high - low, 1e-30)).clip(0, 1)
+        pixels = np.broadcast_to(np.rint(shown * 255), (*values.shape[:2], 3))
+        return np.where(one.foreground[..., None], pixels, grey).astype(np.uint8)
+
+    return seen(one.result), seen(one.reference)

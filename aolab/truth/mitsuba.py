@@ -1,0 +1,155 @@
+"""A second opinion: whole images of the same scene by path tracing, with Mitsuba 3 in a process of its own."""
+
+import importlib.util
+import json
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+
+from ..api import shared_lab
+from ..camera import Camera
+from ..environment import Environment
+from ..errors import Error, ParameterError, SceneError, suggestion
+from ..frame import Frame
+from ..lights import DirectionalLight, Light, PointLight, SpotLight
+from ..loading import load
+from ..loading.images import linear_from_srgb
+from ..mesh import Mesh
+from ..scene import Instance, Scene
+from ..version import __version__
+from ..view import Size, View
+from . import cache as disk
+from .picture import shown
+
+BUFFERS = ("direct", "ambient", "indirect", "radiance", "image")
+# Mitsuba lifts rays off a surface by 9e-5 × (1 + the largest coordinate). In these units the 1 no longer matters, and
+# the lift is a share of the scene, whatever its size.
+EXTENT = 1000.0
+# Texels across a spot's cone; between them the falloff is interpolated.
+SPOT_TEXELS = 1024
+WORKER = Path(__file__).with_name("mitsuba_worker.py")
+LAST_LINES = 6  # of what a failing Mitsuba wrote
+
+
+def path_traced(
+    scene: Any,
+    *,
+    size: Size = (640, 360),
+    camera: Camera | None = None,
+    max_depth: int = 2,
+    samples: int = 64,
+    seed: int = 0,
+    buffers: Iterable[str] = ("radiance", "image"),
+    cache: bool = True,
+    timeout: float = 3600.0,
+) -> Frame:
+    """`scene` (anything that `aolab.load` takes) by path tracing. Each pixel is the mean over its area, box filtered.
+
+    `buffers` chooses what is computed, all (H, W, 3) float32 linear radiance, top row first, but for `image`:
+
+    - `radiance`: everything, over the environment; paths of at most `max_depth` edges: 2 is direct light (of the
+      environment too), 3 adds one bounce, -1 is all of them; `image`: the same, tone mapped as a render, sRGB uint8;
+    - `direct`, `ambient`, `indirect`: what `aolab.reference(radius=None)` calls so: direct light of the lights, direct
+      light of the environment, and one bounce of the lights, whatever `max_depth` is. 0 in the background.
+
+    Besides those there are viewZ, viewNormal and albedo of aolab's own G-buffer, at the pixels' centres. `samples` a
+    pixel, for each light and for the environment: they are rendered one by one and added up, so that the choice among
+    them is no noise. `timeout`: seconds, then Mitsuba is ended. Results are kept on disk unless `cache` is False.
+
+    Where it differs from a render, beyond noise and antialiasing:
+    all lights cast shadows (`SceneError` for one that does not); the environment's irradiance is exact, not 9
+    coefficients; a shading normal turned away from the viewer is not seen as such, but lit from behind its surface.
+    Holes of cut-out textures have edges along texels. Vertex colours together with a texture are a `SceneError`.
+
+    Raises `ParameterError`, also where Mitsuba is not installed, and `Error` with its last words where it fails.
+    """
+    start = perf_counter()
+    scene = load(scene)
+    wanted = _checked(buffers, max_depth, samples, seed, timeout)
+    surfaces = shared_lab().render(scene, "none", size=size, camera=camera)
+    camera = camera or scene.camera
+    assert camera is not None  # Scene frames itself
+    view = View(camera, surfaces.size, scene.bounds)
+    settings = {"engine": "mitsuba", "max_depth": max_depth, "samples": samples}
+    info = {
+        "aolab": __version__,
+        "renderer": "mitsuba scalar_rgb",
+        "scene": scene.source,
+        "module": "reference",
+        "parameters": settings,
+        "camera": asdict(camera),
+        "size": list(view.size),
+        "seed": seed,
+        "triangles": scene.triangles,
+    }
+    made_of = {name: info[name] for name in ("aolab", "camera", "size", "seed")}
+    name = disk.key(scene, buffers=wanted, **settings, **made_of) if cache else ""
+    arrays = disk.load(name) if cache else None
+    if arrays is None:
+        arrays = _render(scene, view, wanted, max_depth, samples, seed, timeout)
+        if cache:
+            disk.store(name, arrays)
+    own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
+    milliseconds = (perf_counter() - start) * 1e3
+    return Frame({**own, **arrays}, {"mitsuba": milliseconds}, info, milliseconds, surfaces.notes)
+
+
+def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, timeout: float) -> list[str]:
+    """The wanted buffers in the table's order, after all arguments have been checked."""
+    wanted = [buffers] if isinstance(buffers, str) else list(buffers)
+    for name in wanted:
+        if name not in BUFFERS:
+            raise ParameterError(f"engine = 'mitsuba' has no buffer '{name}'{suggestion(name, BUFFERS)}")
+    if not isinstance(max_depth, int) or (max_depth < 2 and max_depth != -1):
+        raise ParameterError(f"max_depth = {max_depth!r} is none of: 2 (direct light), 3 (one bounce), ..., -1 (all)")
+    if not isinstance(samples, int) or samples < 1:
+        raise ParameterError(f"samples = {samples!r} is not a whole number from 1 on")
+    if not isinstance(seed, int) or seed < 0:
+        raise ParameterError(f"seed = {seed!r} is not a whole number from 0 on")
+    if not timeout > 0:
+        raise ParameterError(f"timeout = {timeout!r} is not a number of seconds above 0")
+    if importlib.util.find_spec("mitsuba") is None:
+        raise ParameterError("engine = 'mitsuba' needs Mitsuba 3: pip install mitsuba")
+    return [name for name in BUFFERS if name in wanted]
+
+
+def _render(
+    scene: Scene, view: View, wanted: list[str], max_depth: int, samples: int, seed: int, timeout: float
+) -> dict[str, np.ndarray]:
+    lights = [f"light{i}" for i in range(len(scene.lights))]
+    images: dict[str, tuple[str, int, bool]] = {}  # name: emitter, max_depth, is the background black?
+
+    def parts(sources: list[str], depth: int, hide: bool = True) -> list[str]:
+        """The names of the images whose sum is this, asked for."""
+        names = [f"{source}.{depth}.{hide}" for source in sources]
+        images.update({name: (source, depth, hide) for name, source in zip(names, sources, strict=True)})
+        return names
+
+    plus: dict[str, list[str]] = {}
+    if "direct" in wanted:
+        plus["direct"] = parts(lights, 2)
+    if "ambient" in wanted:
+        plus["ambient"] = parts(["environment"], 2)
+    if "indirect" in wanted:
+        plus["indirect"] = parts(lights, 3)
+        minus = parts(lights, 2)
+    if {"radiance", "image"} & set(wanted):
+        plus["radiance"] = parts(lights, max_depth) + parts(["environment"], max_depth, hide=False)
+
+    with tempfile.TemporaryDirectory(prefix="aolab-mitsuba-") as folder:
+        _write(Path(folder), scene, view, images, samples, seed)
+        rendered = run_worker(Path(folder), timeout)
+    black = np.zeros((view.size[1], view.size[0], 3), np.float32)
+    made = {name: sum((rendered[part] for part in names), black) for name, names in plus.items()}
+    if "indirect" in made:
+        made["indirect"] = made["indirect"] - sum((rendered[part] for part in minus), black)
+    if "image" in wanted:
+        made["image"] = shown(made["radiance"])
+    return {name: made[name] for name in wanted}
