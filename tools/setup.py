@@ -102,11 +102,12 @@ def main(stage: str) -> None:
         require_system()
         make_venv()
         print("installing aolab and its libraries into .venv", flush=True)
-        pip_install("--editable", ".")
+        pip_install("--editable", ".[truth]")
     else:
         print(f"installing the {stage} tools into .venv", flush=True)
         pip_install("pip>=25.1")  # the first that knows --group
-        pip_install("--group", stage)
+        extras = "[truth,tune,mitsuba]" if stage == "dev" else "[truth]"  # the tests try every extra for real
+        pip_install("--group", stage, "--editable", f".{extras}")
 
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ def load(source: object, **parameters: object) -> Scene:
     """A `Scene` from nearly anything.
 
     `source` is one of
+
     - a scene of `scenes/` by name, with its parameters as keywords or in a query: `load("toasters", time=1.5)`,
       `load("toasters?time=1.5")`;
     - a file: `.glb`, `.gltf`, `.obj` (with `.mtl`), `.ply`, `.stl`. What it refers to must lie in its own folder;

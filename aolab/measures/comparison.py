@@ -42,22 +42,15 @@ class BufferComparison:
 
     @property
     def error(self) -> np.ndarray:
-        """(H, W), NaN where nothing is compared. A scalar's signed difference, of a colour the mean over its channels;
-        the angle in degrees for directions; for coefficients the norm of their difference, which is the root of the
-        integral of the squared difference of the functions (Parseval)."""  # fmt: skip
+        """(H, W) float64, NaN where nothing is compared: each pixel's error, as its kind has it (`Kind.error`)."""
         difference = self.result.astype(np.float64) - self.reference
-        if self.kind.angular:
+        if self.kind.error == "angle":
             values = angles(self.result, self.reference)
-        elif self.signed:
-            values = difference.mean(axis=2)
-        else:
+        elif self.kind.error == "norm":
             values = np.linalg.norm(difference, axis=2)
+        else:
+            values = difference.mean(axis=2)
         return np.where(self.foreground, values, np.nan)
-
-    @property
-    def signed(self) -> bool:
-        """Whether `error` has a sign."""
-        return not self.kind.angular and not self.name.startswith("sh")
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,7 +177,7 @@ def _compare_buffer(
         if flip:
             hdr = kind.picture == "tone mapped"
             maps["flip"] = flip_map(*((np.maximum(a, 0), np.maximum(b, 0)) if hdr else (seen_a, seen_b)), hdr=hdr)
-    if kind.angular:
+    if kind.error == "angle":
         maps["angle"] = angles(result, reference)
     difference = result.astype(np.float64) - reference
     measures = {region: _measure(difference, maps, mask & foreground) for region, mask in where.items()}

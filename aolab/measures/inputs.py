@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import Notice, ParameterError, suggestion
 from ..frame import Frame
+from .kinds import kind_of
 from .regions import BORDER_SHARE, border, projected_px, silhouettes, thin_occluders
 
 Buffers = Frame | Mapping[str, np.ndarray]
@@ -90,7 +91,16 @@ def _array(one: Buffers, name: str, who: str) -> np.ndarray:
             f"buffer '{name}' of {who} has shape {values.shape}, type {values.dtype}: not numbers (H, W) or (H, W, C)"
         )
     scaled = values / np.float32(255) if values.dtype == np.uint8 else values.astype(np.float32)
-    return scaled[..., None] if values.ndim == 2 else scaled
+    scaled = scaled[..., None] if values.ndim == 2 else scaled
+    kind = kind_of(name)
+    wanted = (1, 3) if kind.picture else (3,) if kind.error == "angle" else (scaled.shape[2],)
+    if scaled.shape[2] == 4 and 3 in wanted:
+        return scaled[..., :3]  # alpha, or a texture's padding
+    if scaled.shape[2] not in wanted:
+        raise ParameterError(
+            f"buffer '{name}' of {who} has shape {values.shape}, not {' or '.join(map(str, wanted))} channels"
+        )
+    return scaled
 
 
 def _shape(array: np.ndarray) -> str:

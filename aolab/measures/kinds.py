@@ -15,18 +15,20 @@ class Kind:
     `picture` is what PSNR, SSIM and FLIP compare, values in [0, 1]: "direct", the values themselves as a screen would
     show them; "tone mapped", linear radiance as a render shows itself (filmic, exposure 1, sRGB), for which FLIP is
     HDR-FLIP of the linear values; None where they make no picture, and PSNR, SSIM and FLIP have no meaning.
-    `angular`: vectors of which the direction counts.
+    `error` is what a pixel's error is: "signed", the mean difference of its channels; "angle" between directions; "norm"
+    of the difference, which for coefficients is the root of the integral of the squared difference (Parseval).
     """
 
     unit: str
     picture: Literal["direct", "tone mapped"] | None = None
-    angular: bool = False
+    error: Literal["signed", "angle", "norm"] = "signed"
 
 
 SHARE = Kind("", "direct")
 DISPLAYED = Kind("sRGB, 0 to 1", "direct")
 RADIANCE = Kind("radiance", "tone mapped")
-DIRECTION = Kind("degrees", angular=True)
+DIRECTION = Kind("degrees", error="angle")
+HARMONICS = Kind("", error="norm")
 LENGTH = Kind("scene units")
 NUMBERS = Kind("")
 
@@ -34,6 +36,7 @@ KINDS = {
     **dict.fromkeys(("visibility", "obscurance", "transfer", "transfer_multibounce", "albedo"), SHARE),
     **dict.fromkeys(("direct", "ambient", "indirect", "radiance"), RADIANCE),
     **dict.fromkeys(("viewNormal", "bent_normal"), DIRECTION),
+    **dict.fromkeys(("sh", *(f"sh{i}" for i in range(4)), *(f"sh_band{i}" for i in range(4))), HARMONICS),
     "viewZ": LENGTH,
     "image": DISPLAYED,
 }

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib import colormaps
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
@@ -19,7 +20,7 @@ SIGNED, MAGNITUDE = "RdBu_r", "viridis"
 BACKGROUND = "0.6"  # grey: in neither map
 DPI = 100
 PANEL_WIDTH = 260, 480  # pixels: smaller pictures are enlarged by whole numbers, larger ones reduced
-MARGIN, HEAD, BAR, TEXT, PER_LINE = 14, 46, 92, 250, 17  # pixels
+MARGIN, HEAD, BAR, TEXT, PER_LINE = 14, 46, 92, 215, 17  # pixels
 
 
 @dataclass(frozen=True)
@@ -61,11 +62,12 @@ def draw(
         figure.text(x / total[0], 1 - y / total[1], words, va="top", **style)  # type: ignore[arg-type]
 
     one = lines[0].comparison
-    mappable = _scale([line.comparison for line in lines], limit)
+    signed = one.kind.error == "signed"
+    mappable, largest = _scale([line.comparison for line in lines], limit)
     write(MARGIN, 6, title, fontsize=10, weight="bold")
     for index, line in enumerate(lines):
         y = HEAD + index * line_height
-        heads = (f"{line.title or names[0]}", names[1], f"error, {names[0]} - {names[1]}" if one.signed else "error")
+        heads = (f"{line.title or names[0]}", names[1], f"error, {names[0]} - {names[1]}" if signed else "error")
         panels = (*_seen(line.comparison), _colored(line.comparison.error, mappable))
         for column, (head, pixels) in enumerate(zip(heads, panels, strict=True)):
             x = MARGIN + column * (panel[0] + MARGIN)
@@ -75,28 +77,29 @@ def draw(
             axes.imshow(pixels, interpolation="nearest" if scale >= 1 else "antialiased", aspect="auto")
         write(MARGIN + 3 * (panel[0] + MARGIN), y, line.text, fontsize=8.5, family="monospace", linespacing=1.3)
     bar = figure.add_axes(box(total[0] - BAR, HEAD, 16, min(total[1] - HEAD - 2 * MARGIN, 420)))
-    _bar(figure, mappable, bar, lines)
+    _bar(figure, mappable, largest, bar, one)
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
 
-def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> ScalarMappable:
+def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> tuple[ScalarMappable, float]:
+    """The colours of errors, and the largest magnitude of one."""
     magnitudes = np.concatenate([np.abs(one.error[np.isfinite(one.error)]) for one in comparisons])
+    largest = float(magnitudes.max(initial=0))
     if limit is None:
-        limit = float(np.percentile(magnitudes, 99)) or float(magnitudes.max())
-    limit = limit if limit > 0 else 1e-6  # nothing differs: any scale shows that
-    signed = comparisons[0].signed
+        limit = float(np.percentile(magnitudes, 99)) if largest else 0.0
+    limit = limit or largest or 1.0  # where most or all is equal
+    signed = comparisons[0].kind.error == "signed"
     colors = colormaps[SIGNED if signed else MAGNITUDE].with_extremes(bad=BACKGROUND)
-    return ScalarMappable(Normalize(-limit if signed else 0, limit), colors)
+    return ScalarMappable(Normalize(-limit if signed else 0, limit), colors), largest
 
 
-def _bar(figure: Figure, mappable: ScalarMappable, axes, lines: Sequence[Line]) -> None:
-    one = lines[0].comparison
-    largest = max(float(np.nanmax(np.abs(line.comparison.error))) for line in lines)
-    beyond = largest > mappable.norm.vmax * (1 + 1e-6)  # type: ignore[operator]
-    bar = figure.colorbar(mappable, cax=axes, extend=("both" if one.signed else "max") if beyond else "neither")
+def _bar(figure: Figure, mappable: ScalarMappable, largest: float, place: Axes, one: BufferComparison) -> None:
+    beyond = largest > (mappable.norm.vmax or 0) * (1 + 1e-6)
+    pointed = "both" if one.kind.error == "signed" else "max"
+    bar = figure.colorbar(mappable, cax=place, extend=pointed if beyond else "neither")
     bar.ax.tick_params(labelsize=8)
-    what = "error" if one.signed else "angle" if one.kind.angular else "norm of the error"
+    what = {"signed": "error", "angle": "angle", "norm": "norm of the error"}[one.kind.error]
     unit = f", {one.kind.unit}" if one.kind.unit else ""
     bar.set_label(f"{one.name}: {what}{unit}" + (f" (largest: {largest:.3g})" if beyond else ""), fontsize=8.5)
 
@@ -105,20 +108,18 @@ def _colored(error: np.ndarray, mappable: ScalarMappable) -> np.ndarray:
     return mappable.to_rgba(np.ma.masked_invalid(error), bytes=True)[..., :3]
 
 
-def _seen(one: BufferComparison) -> tuple[np.ndarray, np.ndarray]:
-    """Result and reference as (H, W, 3) uint8: their pictures, or where they make none, their first channels as far as
-    the reference ranges."""  # fmt: skip
-    low, high = 0.0, 1.0
-    if not one.kind.picture:
-        known = one.reference[one.foreground][:, :3]
-        low, high = (-1.0, 1.0) if one.kind.angular else (float(known.min()), float(known.max()))
-    grey = round(float(BACKGROUND) * 255)
-
-    def seen(values: np.ndarray) -> np.ndarray:
-        values = values[..., :3] if values.shape[2] >= 3 and not one.name.startswith("sh") else values[..., :1]
-        values = np.nan_to_num(values)
-        shown = picture(values, one.kind) if one.kind.picture else ((values - low) / max(high - low, 1e-30)).clip(0, 1)
-        pixels = np.broadcast_to(np.rint(shown * 255), (*values.shape[:2], 3))
-        return np.where(one.foreground[..., None], pixels, grey).astype(np.uint8)
-
-    return seen(one.result), seen(one.reference)
+def _seen(one: BufferComparison) -> list[np.ndarray]:
+    """Result and reference (H, W, 3) uint8: their pictures, or where they make none, their three channels or the first,
+    as far as the reference ranges."""  # fmt: skip
+    shown = [values if values.shape[2] == 3 else values[..., :1] for values in (one.result, one.reference)]
+    if one.kind.picture:
+        shown = [picture(np.nan_to_num(values), one.kind) for values in shown]
+    else:
+        known = shown[1][one.foreground]
+        low, high = (-1.0, 1.0) if one.kind.error == "angle" else (float(known.min()), float(known.max()))
+        shown = [((np.nan_to_num(values) - low) / max(high - low, 1e-30)).clip(0, 1) for values in shown]
+    grey = float(BACKGROUND)
+    return [
+        np.rint(np.where(one.foreground[..., None], values, grey) * np.full(3, 255)).astype(np.uint8)
+        for values in shown
+    ]

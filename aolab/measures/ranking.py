@@ -134,4 +134,6 @@ def _text(entry: Entry) -> str:
         for region, measures in one.measures.items()
         if region != "all" and measures.pixels
     ]
-    return "\n".join([*lines, "", "rmse at", *where, "", f"{'frame':<12}{entry.milliseconds:>9.1f} ms"])
+    if isinstance(radius := getattr(entry.module, "radius", None), float):
+        where += ["", f"{'radius':<12}{radius:>9.4g}"]
+    return "\n".join([*lines, "", "rmse at", *where, f"{'frame':<12}{entry.milliseconds:>9.1f} ms"])

@@ -15,25 +15,17 @@ import numpy as np
 
 from ..api import shared_lab
 from ..camera import Camera
-from ..environment import Environment
-from ..errors import Error, ParameterError, SceneError, suggestion
+from ..errors import Error, ParameterError, suggestion
 from ..frame import Frame
-from ..lights import DirectionalLight, Light, PointLight, SpotLight
 from ..loading import load
-from ..loading.images import linear_from_srgb
-from ..mesh import Mesh
-from ..scene import Instance, Scene
+from ..scene import Scene
 from ..version import __version__
 from ..view import Size, View
 from . import cache as disk
+from .mitsuba_scene import Description, Image, describe
 from .picture import shown
 
 BUFFERS = ("direct", "ambient", "indirect", "radiance", "image")
-# Mitsuba lifts rays off a surface by 9e-5 × (1 + the largest coordinate). In these units the 1 no longer matters, and
-# the lift is a share of the scene, whatever its size.
-EXTENT = 1000.0
-# Texels across a spot's cone; between them the falloff is interpolated.
-SPOT_TEXELS = 1024
 WORKER = Path(__file__).with_name("mitsuba_worker.py")
 LAST_LINES = 6  # of what a failing Mitsuba wrote
 
@@ -120,36 +112,55 @@ def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, ti
     return [name for name in BUFFERS if name in wanted]
 
 
+def _parts(buffer: str, lights: int, max_depth: int) -> list[tuple[int, Image]]:
+    """The images that `buffer` is the sum of, each with its sign. The environment is the emitter after the lights."""
+    direct = [(1, Image(i, 2, False)) for i in range(lights)]
+    if buffer == "direct":
+        return direct
+    if buffer == "ambient":
+        return [(1, Image(lights, 2, False))]
+    if buffer == "indirect":
+        return [(1, Image(i, 3, False)) for i in range(lights)] + [(-1, image) for _, image in direct]
+    return [(1, Image(i, max_depth, False)) for i in range(lights)] + [(1, Image(lights, max_depth, True))]
+
+
 def _render(
     scene: Scene, view: View, wanted: list[str], max_depth: int, samples: int, seed: int, timeout: float
 ) -> dict[str, np.ndarray]:
-    lights = [f"light{i}" for i in range(len(scene.lights))]
-    images: dict[str, tuple[str, int, bool]] = {}  # name: emitter, max_depth, is the background black?
-
-    def parts(sources: list[str], depth: int, hide: bool = True) -> list[str]:
-        """The names of the images whose sum is this, asked for."""
-        names = [f"{source}.{depth}.{hide}" for source in sources]
-        images.update({name: (source, depth, hide) for name, source in zip(names, sources, strict=True)})
-        return names
-
-    plus: dict[str, list[str]] = {}
-    if "direct" in wanted:
-        plus["direct"] = parts(lights, 2)
-    if "ambient" in wanted:
-        plus["ambient"] = parts(["environment"], 2)
-    if "indirect" in wanted:
-        plus["indirect"] = parts(lights, 3)
-        minus = parts(lights, 2)
-    if {"radiance", "image"} & set(wanted):
-        plus["radiance"] = parts(lights, max_depth) + parts(["environment"], max_depth, hide=False)
-
-    with tempfile.TemporaryDirectory(prefix="aolab-mitsuba-") as folder:
-        _write(Path(folder), scene, view, images, samples, seed)
-        rendered = run_worker(Path(folder), timeout)
-    black = np.zeros((view.size[1], view.size[0], 3), np.float32)
-    made = {name: sum((rendered[part] for part in names), black) for name, names in plus.items()}
-    if "indirect" in made:
-        made["indirect"] = made["indirect"] - sum((rendered[part] for part in minus), black)
+    needed = dict.fromkeys("radiance" if name == "image" else name for name in wanted)
+    parts = {name: _parts(name, len(scene.lights), max_depth) for name in needed}
+    images = list(dict.fromkeys(image for each in parts.values() for _, image in each))
+    rendered = _run(describe(scene, view, images, samples, seed), timeout) if images else {}
+    made = {name: np.zeros((view.size[1], view.size[0], 3), np.float32) for name in needed}
+    for name, each in parts.items():
+        for sign, image in each:
+            made[name] += np.float32(sign) * rendered[image.name]
     if "image" in wanted:
         made["image"] = shown(made["radiance"])
     return {name: made[name] for name in wanted}
+
+
+def _run(description: Description, timeout: float) -> dict[str, np.ndarray]:
+    """The images, by name, from a worker process. Raises `Error`."""
+    with tempfile.TemporaryDirectory(prefix="aolab-mitsuba-") as name:
+        folder = Path(name)
+        (folder / "scene.json").write_text(json.dumps(description.scene))
+        np.savez(folder / "arrays.npz", **description.arrays)  # type: ignore[arg-type]
+        run_worker(folder, timeout)
+        with np.load(folder / "images.npz") as file:
+            return {name: file[name] for name in file.files}
+
+
+def run_worker(folder: Path, timeout: float) -> None:
+    """Let Mitsuba render what lies in `folder`. Raises `Error` with its last words, or after `timeout` seconds."""
+    # -P: this folder's modules (cache, lighting, mitsuba, ...) must not stand in for installed ones
+    command = [sys.executable, "-P", str(WORKER), str(folder)]
+    try:
+        done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout)
+    except subprocess.TimeoutExpired:
+        raise Error(
+            f"Mitsuba did not finish within {timeout:g} s: fewer samples, a smaller size, or a larger timeout"
+        ) from None
+    if done.returncode:
+        words = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[-LAST_LINES:]
+        raise Error(f"Mitsuba failed (exit status {done.returncode}): " + "\n".join(words))

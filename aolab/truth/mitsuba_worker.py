@@ -1,7 +1,7 @@
-"""Renders the scene that `aolab.truth.mitsuba` wrote into a folder: `python -P mitsuba_worker.py FOLDER`.
+"""Renders what `mitsuba_scene.describe` described: `python -P mitsuba_worker.py FOLDER`.
 
-A program of its own, so that whatever Mitsuba does to its process is done to this one. It reads scene.json and
-arrays.npz, where lengths are already Mitsuba's, and writes images.npz: one (H, W, 3) float32 an image, linear.
+A program of its own, so that whatever Mitsuba does to its process is done to this one. Reads scene.json and arrays.npz,
+where lengths are already Mitsuba's; writes images.npz: (H, W, 3) float32 by name, linear, top row first.
 """
 
 import json
@@ -9,10 +9,11 @@ import sys
 from pathlib import Path
 from typing import Any
 
-import mitsuba as mi  # the only module of ours that imports it
+import mitsuba as mi
 import numpy as np
 
 Arrays = dict[str, np.ndarray]
+VERTEX_COLOR = "vertex_color"
 
 
 def main(folder: Path) -> None:
@@ -20,108 +21,90 @@ def main(folder: Path) -> None:
     scene = json.loads((folder / "scene.json").read_text())
     with np.load(folder / "arrays.npz") as file:
         arrays = {name: file[name] for name in file.files}
-    materials = [_material(description, arrays) for description in scene["materials"]]
-    shapes = {f"shape{i}": _shape(f"shape{i}", arrays, materials) for i in range(scene["shapes"])}
+    shapes = {f"shape{i}": _shape(f"shape{i}", material, arrays) for i, material in enumerate(scene["shapes"])}
     emitters = [_emitter(description, arrays) for description in scene["emitters"]]
-    sensor = _sensor(**scene["camera"], **scene["film"])
+    sensor = _sensor(scene["camera"], *scene["size"])
     images = {}
     for seed, (name, image) in enumerate(scene["images"].items(), start=scene["seed"]):
-        lit = {f"emitter{i}": emitters[i] for i in image["emitters"]}
-        world = mi.load_dict({"type": "scene", **shapes, **lit, "sensor": sensor})
-        integrator = mi.load_dict(image["integrator"])
-        rendered = mi.render(world, integrator=integrator, seed=seed % 2**32, spp=scene["samples"])
-        images[name] = np.array(rendered, np.float32)[..., :3]
+        world = mi.load_dict({"type": "scene", **shapes, "emitter": emitters[image["emitter"]]})
+        integrator = mi.load_dict({
+            "type": scene["integrator"],
+            "max_depth": image["max_depth"],
+            "hide_emitters": not image["background"],
+        })  # fmt: skip
+        rendered = mi.render(world, sensor=sensor, integrator=integrator, seed=seed % 2**32, spp=scene["samples"])
+        images[name] = np.array(rendered, np.float32)
     np.savez(folder / "images.npz", **images)
 
 
-def _sensor(
-    eye: list[float], target: list[float], up: list[float], fov: float, near: float, far: float, width: int, height: int
-) -> Any:
-    return mi.load_dict({
-        "type": "perspective",
-        "fov": fov,
-        "fov_axis": "y",
-        "near_clip": near,
-        "far_clip": far,
-        "to_world": mi.ScalarTransform4f().look_at(origin=eye, target=target, up=up),
-        "film": {
-            "type": "hdrfilm",
-            "width": width,
-            "height": height,
-            "pixel_format": "rgb",
-            "component_format": "float32",
-            "rfilter": {"type": "box"},  # a pixel is the mean over its own area, nothing of its neighbours
-        },
-        "sampler": {"type": "independent"},
-    })  # fmt: skip
+def _sensor(camera: dict[str, Any], width: int, height: int) -> Any:
+    pose = {name: camera.pop(name) for name in ("origin", "target", "up")}
+    film = {
+        "type": "hdrfilm",
+        "width": width,
+        "height": height,
+        "pixel_format": "rgb",
+        "component_format": "float32",
+        "rfilter": {"type": "box"},  # a pixel is the mean over its own area, nothing of its neighbours
+    }
+    placed = {"to_world": mi.ScalarTransform4f().look_at(**pose), "fov_axis": "y"}
+    return mi.load_dict({"type": "perspective", **placed, **camera, "film": film, "sampler": {"type": "independent"}})
 
 
-def _shape(name: str, arrays: Arrays, materials: list[Any]) -> Any:
-    vertices, faces = arrays[f"{name}.vertices"], arrays[f"{name}.faces"]
-    properties = mi.Properties()
-    properties["bsdf"] = materials[int(arrays[f"{name}.material"])]
+def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:
+    vertices, faces, normals = (arrays[f"{name}.{part}"] for part in ("vertices", "faces", "normals"))
     uv, colors = arrays.get(f"{name}.uv"), arrays.get(f"{name}.colors")
-    mesh = mi.Mesh(
-        name,
-        len(vertices),
-        len(faces),
-        props=properties,
-        has_vertex_normals=True,
-        has_vertex_texcoords=uv is not None,
-    )
-    if colors is not None:
-        mesh.add_attribute("vertex_color", 3, colors.ravel())
+    properties = mi.Properties()
+    properties["bsdf"] = _bsdf(material, arrays)
+    mesh = mi.Mesh(name, len(vertices), len(faces), properties, True, uv is not None)
     parameters = mi.traverse(mesh)
     parameters["vertex_positions"] = vertices.ravel()
+    parameters["vertex_normals"] = normals.ravel()
     parameters["faces"] = faces.ravel()
     if uv is not None:
         parameters["vertex_texcoords"] = uv.ravel()
-    parameters["vertex_normals"] = arrays[f"{name}.normals"].ravel()
     parameters.update()
+    if colors is not None:
+        mesh.add_attribute(VERTEX_COLOR, 3, colors.ravel())
     return mesh
 
 
-def _material(description: dict[str, Any], arrays: Arrays) -> Any:
-    reflectance = description["reflectance"]
-    if isinstance(reflectance, str):  # an image by name, or the vertices' colours
-        vertex_color = {"type": "mesh_attribute", "name": "vertex_color"}
-        reflectance = vertex_color if reflectance == "vertex_color" else _bitmap(arrays[reflectance], "bilinear")
+def _bsdf(material: dict[str, Any], arrays: Arrays) -> Any:
+    reflectance = material["reflectance"]
+    if reflectance == VERTEX_COLOR:
+        reflectance = {"type": "mesh_attribute", "name": VERTEX_COLOR}
+    elif isinstance(reflectance, str):
+        reflectance = _bitmap(arrays[reflectance], "bilinear", "repeat")
     else:
         reflectance = {"type": "rgb", "value": reflectance}
     bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": reflectance}}
-    if description["opacity"]:
-        bsdf = {"type": "mask", "opacity": _bitmap(arrays[description["opacity"]], "nearest"), "bsdf": bsdf}
+    if material["opacity"] is not None:
+        bsdf = {"type": "mask", "opacity": _bitmap(arrays[material["opacity"]], "nearest", "repeat"), "bsdf": bsdf}
     return mi.load_dict(bsdf)
 
 
 def _emitter(description: dict[str, Any], arrays: Arrays) -> Any:
-    kind = description["type"]
-    emitter = {name: value for name, value in description.items() if name not in ("image", "target")}
+    emitter = dict(description)
     for name in ("radiance", "irradiance", "intensity"):
         if name in emitter:
             emitter[name] = {"type": "rgb", "value": emitter[name]}
-    if kind == "envmap":
-        emitter["bitmap"] = mi.Bitmap(arrays[description["image"]])
-        emitter["to_world"] = mi.ScalarTransform4f().rotate([0, 1, 0], 180)  # its centre column looks down +z
-    if kind == "spot":
-        position, target = (np.asarray(emitter.pop("position")), np.asarray(description["target"]))
-        up = np.eye(3)[np.abs(target - position).argmin()]
+    if emitter["type"] == "envmap":
+        emitter["bitmap"] = mi.Bitmap(arrays[emitter.pop("image")])
+        emitter["to_world"] = mi.ScalarTransform4f().rotate([0, 1, 0], 180)  # Mitsuba's centre column looks down +z
+    if emitter["type"] == "spot":
+        origin, direction = np.array(emitter.pop("origin")), np.array(emitter.pop("direction"))
+        up = np.eye(3)[np.abs(direction).argmin()]  # any: the cone is round
         emitter["to_world"] = mi.ScalarTransform4f().look_at(
-            origin=position.tolist(), target=target.tolist(), up=up.tolist()
+            origin=origin.tolist(), target=(origin + direction).tolist(), up=up.tolist()
         )
-        emitter["texture"] = _bitmap(arrays[description["image"]], "bilinear", "clamp")
+        emitter["texture"] = _bitmap(arrays[emitter["texture"]], "bilinear", "clamp")
     return mi.load_dict(emitter)
 
 
-def _bitmap(image: np.ndarray, filter_type: str, wrap_mode: str = "repeat") -> dict[str, Any]:
-    """A linear texture; `image` (H, W, 1 or 3) float32, top row first."""
-    return {
-        "type": "bitmap",
-        "bitmap": mi.Bitmap(np.ascontiguousarray(image)),
-        "raw": True,
-        "filter_type": filter_type,
-        "wrap_mode": wrap_mode,
-    }
+def _bitmap(image: np.ndarray, filter_type: str, wrap_mode: str) -> dict[str, Any]:
+    """`image` (H, W, 1 or 3) float32, linear."""
+    bitmap = mi.Bitmap(np.ascontiguousarray(image))
+    return {"type": "bitmap", "bitmap": bitmap, "raw": True, "filter_type": filter_type, "wrap_mode": wrap_mode}
 
 
 if __name__ == "__main__":

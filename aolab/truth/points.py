@@ -20,71 +20,72 @@ EPSILON = float(np.finfo(np.float32).eps)
 
 @dataclass(frozen=True)
 class Points:
-    """The pixels that show a surface. Positions are in the coordinates of `World`; vectors are in world space."""
+    """Some of the pixels that show a surface. Positions are in the coordinates of `World`; vectors are in world space."""
 
-    pixel: np.ndarray  # (n,) int64, row-major from the top left
     position: np.ndarray  # (n, 3) float32: where rays start, lifted off the surface
     normal: np.ndarray  # (n, 3) float32, unit: the G-buffer's, on the viewer's side
     albedo: np.ndarray  # (n, 3) float32
 
-    def part(self, start: int, stop: int) -> "Points":
-        """The points from `start` up to `stop`."""
-        return Points(*(getattr(self, name)[start:stop] for name in ("pixel", "position", "normal", "albedo")))
-
     def __len__(self) -> int:
-        return len(self.pixel)
+        return len(self.position)
 
 
-def surface_points(frame: Frame, scene: Scene, view: View, world: World) -> Points:
-    """The surface at the centre of every pixel that shows one.
+class Surface:
+    """The surface at the centre of every pixel that shows one; `pixel` holds their indices, row-major from the top left.
 
     The position is rebuilt from viewZ and moved onto the plane of the triangle that a ray through the pixel meets,
     then lifted by `World.lift` along that triangle's normal, on the viewer's side. Where ray and rasteriser disagree
     on the triangle (edges: a rasteriser snaps vertices to a fraction of a pixel), the point starts a pixel's width
     off along the shading normal instead.
     """
-    pixel = np.flatnonzero(frame.mask)
-    depth = -frame["viewZ"].reshape(-1)[pixel].astype(np.float64)
-    rays = pixel_rays(view)[pixel]
-    world_from_view = np.linalg.inv(view.camera.view_from_world)
-    to_world = world_from_view[:3, :3]
-    eye = world_from_view[:3, 3] - world.centre
-    directions = rays @ to_world.T
-    positions = eye + directions * depth[:, None]
-    shading = _unit(frame["viewNormal"].reshape(-1, 3)[pixel].astype(np.float64) @ to_world.T)
 
-    near = view.camera.clip_planes(scene.bounds)[0]
-    lengths = np.linalg.norm(directions, axis=1, keepdims=True)
-    start, unit = (eye + near * directions).astype(np.float32), (directions / lengths).astype(np.float32)
-    hits = world.first_hit(start, unit, np.inf)
+    def __init__(self, frame: Frame, scene: Scene, view: View, world: World) -> None:
+        self.pixel = np.flatnonzero(frame.mask)
+        self._view_z, self._normal, self._albedo = frame["viewZ"], frame["viewNormal"], frame["albedo"]
+        self._view, self._world = view, world
+        self._world_from_view = np.linalg.inv(view.camera.view_from_world)
+        self._eye = self._world_from_view[:3, 3] - world.centre
+        self._near = view.camera.clip_planes(scene.bounds)[0]
+        # what the rasteriser's float32 transform may add, far from the origin
+        extent = np.abs(scene.bounds).max() + np.linalg.norm(self._world_from_view[:3, 3])
+        self._rounding = 8 * EPSILON * float(extent)
 
-    pixel_width = depth * 2 * view.camera.tan_half_fov(view.size)[1] / view.size[1]
-    # what the rasteriser's float32 transform may add, far from the origin
-    rounding = 8 * EPSILON * (np.abs(scene.bounds).max() + np.linalg.norm(eye + world.centre))
-    tolerance = pixel_width / SAME_PLANE + rounding
+    def __len__(self) -> int:
+        return len(self.pixel)
 
-    geometric = world.normals[hits.triangle].astype(np.float64)
-    geometric *= -np.sign((geometric * directions).sum(axis=1, keepdims=True))
-    height = ((positions - world.corners[hits.triangle, 0]) * geometric).sum(axis=1)
-    facing = (shading * geometric).sum(axis=1) > 0
-    same = (hits.triangle >= 0) & (np.abs(height) <= tolerance) & facing
-    geometric[~same], height[~same] = shading[~same], 0.0
-    flat = same & (np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING)
-    shading[flat] = geometric[flat]
-    lift = np.where(same, world.lift - height, pixel_width + rounding)
-    albedo = frame["albedo"].reshape(-1, 3)[pixel]
-    position = (positions + geometric * lift[:, None]).astype(np.float32)
-    return Points(pixel, position, shading.astype(np.float32), albedo)
+    def points(self, start: int, stop: int) -> Points:
+        """The points from `start` up to `stop`. Safe to call from any thread."""
+        pixel = self.pixel[start:stop]
+        depth = -self._view_z.reshape(-1)[pixel].astype(np.float64)
+        to_world = self._world_from_view[:3, :3].T
+        directions = pixel_rays(self._view, pixel) @ to_world
+        positions = self._eye + directions * depth[:, None]
+        shading = _unit(self._normal.reshape(-1, 3)[pixel].astype(np.float64) @ to_world)
+
+        first = (self._eye + self._near * directions).astype(np.float32)
+        triangle = self._world.first_hit(first, _unit(directions).astype(np.float32), np.inf).triangle
+        geometric = self._world.normals[triangle].astype(np.float64)
+        geometric *= -np.sign((geometric * directions).sum(axis=1, keepdims=True))
+        height = ((positions - self._world.corners[triangle, 0]) * geometric).sum(axis=1)
+
+        pixel_width = depth * 2 * self._view.camera.tan_half_fov(self._view.size)[1] / self._view.size[1]
+        facing = (shading * geometric).sum(axis=1) > 0
+        same = (triangle >= 0) & (np.abs(height) <= pixel_width / SAME_PLANE + self._rounding) & facing
+        geometric = np.where(same[:, None], geometric, shading)
+        flat = same & (np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING)
+        shading[flat] = geometric[flat]
+        lift = np.where(same, self._world.lift - height, pixel_width + self._rounding)
+        position = (positions + geometric * lift[:, None]).astype(np.float32)
+        return Points(position, shading.astype(np.float32), self._albedo.reshape(-1, 3)[pixel])
 
 
-def pixel_rays(view: View) -> np.ndarray:
-    """(pixels, 3) float64: the view-space ray through each pixel's centre, z = -1, row-major from the top left."""
+def pixel_rays(view: View, pixel: np.ndarray) -> np.ndarray:
+    """(n, 3) float64: the view-space rays, z = -1, through the centres of pixels, row-major from the top left."""
     width, height = view.size
     scale_x, scale_y, offset_x, offset_y = ray_scale_offset(view.camera, view.size)
-    x = (np.arange(width) + 0.5) * scale_x + offset_x
-    y = (np.arange(height)[::-1] + 0.5) * scale_y + offset_y
-    grid_x, grid_y = np.meshgrid(x, y)
-    return np.stack([grid_x, grid_y, np.full_like(grid_x, -1)], axis=-1).reshape(-1, 3)
+    x = (pixel % width + 0.5) * scale_x + offset_x
+    y = (height - 0.5 - pixel // width) * scale_y + offset_y
+    return np.stack([x, y, np.full_like(x, -1)], axis=-1)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

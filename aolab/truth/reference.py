@@ -25,7 +25,7 @@ from .casters import Engine
 from .hemisphere import strata
 from .integrals import Measure, Setting
 from .picture import over_environment, shown, spread
-from .points import Points, surface_points
+from .points import Surface
 from .tracing import trace
 from .world import World
 
@@ -53,7 +53,7 @@ def reference(
     """Ray-traced truth for `scene`, at the surface points of aolab's own G-buffer: pixels correspond one to one.
 
     `rays`, even, are cast from each pixel's centre, stratified, with density cosθ/π around the G-buffer's normal. They
-    start off the surface (`World.lift`, `surface_points`); one that dips below its triangle, as shading normals allow,
+    start off the surface (`World.lift`, `points.Surface`); one that dips below its triangle, as shading normals allow,
     meets that triangle and is blocked. All triangles block, from both sides; holes of cut-out textures do not.
 
     `radius` (scene units; None is unlimited) and `falloff` mean what they mean for the modules: a hit at distance d
@@ -115,9 +115,9 @@ def reference(
         world = World(scene, engine)
         setting = Setting(world, scene.environment, scene.lights, radius, falloff, measure, bounces)
         needed = {"radiance" if name == "image" else name for name in wanted}
-        points = surface_points(surfaces, scene, view, world)
-        traced = trace(setting, points, rays, seed, [name for name in BUFFERS if name in needed], progress)
-        arrays = _pictures(traced, points, surfaces.mask, setting, view, wanted)
+        surface = Surface(surfaces, scene, view, world)
+        traced = trace(setting, surface, rays, seed, [name for name in BUFFERS if name in needed], progress)
+        arrays = _pictures(traced, surface.pixel, surfaces.mask, setting, view, wanted)
         if cache:
             disk.store(name, arrays)
     milliseconds = (perf_counter() - start) * 1e3
@@ -126,10 +126,10 @@ def reference(
 
 
 def _pictures(
-    traced: dict[str, np.ndarray], points: Points, mask: np.ndarray, setting: Setting, view: View, wanted: list[str]
+    traced: dict[str, np.ndarray], pixel: np.ndarray, mask: np.ndarray, setting: Setting, view: View, wanted: list[str]
 ) -> dict[str, np.ndarray]:
     """(H, W[, channels]) from values at points; radiance over the environment, and the image of it."""
-    full = {name: spread(values, points.pixel, view, BUFFERS[name].background) for name, values in traced.items()}
+    full = {name: spread(values, pixel, view, BUFFERS[name].background) for name, values in traced.items()}
     if "radiance" in full:
         full["radiance"] = over_environment(full["radiance"], mask, setting.environment, view)
         full["image"] = shown(full["radiance"])

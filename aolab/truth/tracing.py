@@ -10,21 +10,21 @@ import numpy as np
 from .buffers import BUFFERS
 from .integrals import Setting, integrate
 from .lighting import irradiance
-from .points import Points
+from .points import Surface
 
 CHUNK = 16_384  # points a thread has in hand: a few hundred kB an array, which stays within a core's cache
 
 
 def trace(
-    setting: Setting, points: Points, rays: int, seed: int, wanted: list[str], progress: bool | None
+    setting: Setting, surface: Surface, rays: int, seed: int, wanted: list[str], progress: bool | None
 ) -> dict[str, np.ndarray]:
-    """The `wanted` buffers at the points: (n, channels) float32."""
+    """The `wanted` buffers at the surface's points: (n, channels) float32."""
     integrals = {integral for name in wanted for integral in BUFFERS[name].integrals}
     hemisphere = sorted(integrals - {"light"})
-    result = {name: np.zeros((len(points), BUFFERS[name].channels), np.float32) for name in wanted}
+    result = {name: np.zeros((len(surface), BUFFERS[name].channels), np.float32) for name in wanted}
 
     def work(start: int) -> int:
-        part = points.part(start, start + CHUNK)
+        part = surface.points(start, start + CHUNK)
         random = np.random.Generator(np.random.SFC64([seed, start]))
         means = integrate(setting, part, rays, hemisphere, random) if hemisphere else {}
         if "light" in integrals:
@@ -33,7 +33,7 @@ def trace(
             result[name][start : start + CHUNK] = BUFFERS[name].finish(means, part)
         return len(part)
 
-    _run(work, range(0, len(points), CHUNK), len(points), progress)
+    _run(work, range(0, len(surface), CHUNK), len(surface), progress)
     return result
 
 

@@ -1,0 +1,167 @@
+"""A scene in Mitsuba's terms: arrays, and a description in JSON, which `mitsuba_worker.py` makes Mitsuba's objects of."""
+
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..camera import Camera
+from ..environment import Environment
+from ..errors import SceneError
+from ..lights import DirectionalLight, Light, PointLight, SpotLight
+from ..loading.images import linear_from_srgb
+from ..mesh import Mesh, Texture
+from ..scene import Instance, Scene
+from ..view import View
+
+# Mitsuba lifts rays off a surface by 9e-5 × (1 + the largest coordinate). With a scene of this radius the 1 does not
+# matter, and the lift is the same share of every scene, whatever its unit.
+RADIUS = 1000.0
+SPOT_TEXELS = 1024  # across a spot's cone; between them its falloff is interpolated
+
+
+class Image(NamedTuple):
+    """One rendering: a single emitter (an index of the description's), and paths of at most `max_depth` edges."""
+
+    emitter: int
+    max_depth: int
+    background: bool  # is the environment seen behind the surfaces?
+
+    @property
+    def name(self) -> str:
+        return f"emitter{self.emitter}.depth{self.max_depth}" + ".background" * self.background
+
+
+@dataclass
+class Description:
+    """What the worker reads: `arrays` by name, and `scene`, which JSON can hold."""
+
+    arrays: dict[str, np.ndarray] = field(default_factory=dict)
+    scene: dict[str, Any] = field(default_factory=dict)
+
+
+def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: int) -> Description:
+    """Everything that the worker needs. Emitters are the scene's lights, in order, and then its environment.
+
+    Raises `SceneError` for what Mitsuba has no counterpart of: a light without shadow, vertex colours × texture.
+    """
+    assert scene.environment is not None  # Scene fills it in
+    centre, scale = scene.bounds.mean(axis=0), RADIUS / scene.radius
+    cut_out = any(instance.mesh.material.alpha_cutoff is not None for instance in scene.instances)
+    made = Description()
+    for i, instance in enumerate(scene.instances):
+        _shape(made.arrays, f"shape{i}", instance, centre, scale)
+    made.scene = {
+        "shapes": [_material(made.arrays, f"shape{i}", each.mesh) for i, each in enumerate(scene.instances)],
+        "emitters": [
+            *(_light(made.arrays, f"light{i}", light, centre, scale) for i, light in enumerate(scene.lights)),
+            _environment(made.arrays, scene.environment),
+        ],
+        "camera": _camera(view, scene.bounds, centre, scale),
+        "size": view.size,
+        "images": {image.name: image._asdict() for image in images},
+        # holes are surfaces to `path`: they would cast shadows, and count as a bounce
+        "integrator": "volpath" if cut_out else "path",
+        "samples": samples,
+        "seed": seed,
+    }
+    return made
+
+
+def _camera(view: View, bounds: np.ndarray, centre: np.ndarray, scale: float) -> dict[str, Any]:
+    camera: Camera = view.camera
+    near, far = camera.clip_planes(bounds)
+    return {
+        "origin": ((np.asarray(camera.eye) - centre) * scale).tolist(),
+        "target": ((np.asarray(camera.target) - centre) * scale).tolist(),
+        "up": camera.up,
+        "fov": camera.fov,
+        "near_clip": near * scale,
+        "far_clip": far * scale,
+    }
+
+
+def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre: np.ndarray, scale: float) -> None:
+    """Vertices and normals in Mitsuba's world; the cofactor matrix, as in glsl/pipeline/gbuffer.vert."""
+    mesh = instance.mesh
+    assert mesh.normals is not None  # Mesh makes them
+    linear, translation = instance.world_from_local[:3, :3], instance.world_from_local[:3, 3]
+    cofactor = np.linalg.det(linear) * np.linalg.inv(linear).T
+    normals = mesh.normals.astype(np.float64) @ cofactor.T
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+    vertices = (mesh.vertices.astype(np.float64) @ linear.T + translation - centre) * scale
+    arrays[f"{name}.vertices"] = vertices.astype(np.float32)
+    arrays[f"{name}.normals"] = normals.astype(np.float32)
+    arrays[f"{name}.faces"] = mesh.faces
+    if mesh.material.texture is not None:
+        uv = np.zeros((len(vertices), 2), np.float32) if mesh.uv is None else mesh.uv
+        arrays[f"{name}.uv"] = uv
+
+
+def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str, Any]:
+    """`reflectance`: RGB, the name of an image, or "vertex_color"; `opacity`: the name of an image, or None."""
+    material, texture = mesh.material, mesh.material.texture
+    base = np.array((*material.base_color, material.alpha), np.float32)
+    colors = np.ones((1, 4), np.float32) if mesh.colors is None else mesh.colors
+    if (colors == colors[0]).all():
+        base, colors = base * colors[0], colors[:1]
+    cut_out = material.alpha_cutoff is not None and (texture is not None or base[3] < material.alpha_cutoff)
+    if len(colors) > 1 and (texture is not None or material.alpha_cutoff is not None):
+        raise SceneError(
+            f"mesh '{mesh.name}': engine = 'mitsuba' has no product of vertex colours and texture, nor cut-out vertex "
+            "alpha; leave out one of them"
+        )
+    description: dict[str, Any] = {"reflectance": base[:3].clip(0, 1).tolist(), "opacity": None}
+    if len(colors) > 1:
+        arrays[f"{name}.colors"] = (colors * base)[:, :3].clip(0, 1)
+        description["reflectance"] = "vertex_color"
+    if texture is not None:
+        key = f"{name}.reflectance"
+        arrays[key] = (linear_from_srgb(texture.pixels[..., :3]) * base[:3]).clip(0, 1)
+        description["reflectance"] = key
+    if cut_out:
+        key = f"{name}.opacity"
+        alpha = np.full((1, 1), 255, np.uint8) if texture is None else texture.pixels[..., 3]
+        arrays[key] = (alpha[..., None] / 255 * base[3] >= material.alpha_cutoff).astype(np.float32)
+        description["opacity"] = key
+    return description
+
+
+def _light(arrays: dict[str, np.ndarray], name: str, light: Light, centre: np.ndarray, scale: float) -> dict[str, Any]:
+    if not light.shadow:
+        raise SceneError(f"{type(light).__name__} without shadow: engine = 'mitsuba' has no such light")
+    if isinstance(light, DirectionalLight):
+        return {"type": "directional", "direction": light.direction, "irradiance": light.irradiance}
+    position = (np.asarray(light.position) - centre) * scale
+    intensity = (np.asarray(light.intensity) * scale**2).tolist()
+    if isinstance(light, PointLight):
+        return {"type": "point", "position": position.tolist(), "intensity": intensity}
+    arrays[f"{name}.falloff"] = _falloff(light)
+    return {
+        "type": "spot",
+        "origin": position.tolist(),
+        "direction": (np.asarray(light.direction) / np.linalg.norm(light.direction)).tolist(),
+        "intensity": intensity,
+        "cutoff_angle": light.outer,
+        "beam_width": light.outer * 0.9999,  # Mitsuba's own falloff, linear in the angle, is left no room
+        "texture": f"{name}.falloff",
+    }
+
+
+def _falloff(light: SpotLight) -> np.ndarray:
+    """(n, n, 1) float32: KHR_lights_punctual's falloff, projected along the axis to the square around the cone."""
+    side = ((np.arange(SPOT_TEXELS) + 0.5) / SPOT_TEXELS * 2 - 1) * np.tan(np.radians(light.outer))
+    cosine = 1 / np.sqrt(1 + side[:, None] ** 2 + side**2)
+    inner, outer = np.cos(np.radians([light.inner, light.outer]))
+    return (((cosine - outer) / (inner - outer)).clip(0, 1) ** 2).astype(np.float32)[..., None]
+
+
+def _environment(arrays: dict[str, np.ndarray], environment: Environment) -> dict[str, Any]:
+    radiance = environment.radiance
+    if (radiance == radiance[0, 0]).all():
+        return {"type": "constant", "radiance": radiance[0, 0].tolist()}
+    # Mitsuba's first and last row lie at the poles, ours half a row away from them, and ours goes on evenly from
+    # there: a row at every half row of ours is the same function
+    rows = np.repeat(np.pad(radiance, ((1, 1), (0, 0), (0, 0)), "edge"), 2, axis=0)
+    arrays["environment"] = (rows[1:-2] + rows[2:-1]) / 2
+    return {"type": "envmap", "image": "environment"}

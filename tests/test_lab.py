@@ -1,0 +1,234 @@
+"""The lab between frames: the same seed gives the same frame, frames keep what they hold, nothing piles up."""
+
+import gc
+import json
+
+import numpy as np
+import pytest
+import small_scenes
+from PIL import Image
+
+import aolab
+from aolab import Camera, DirectionalLight, Lab, ParameterError
+from aolab.modules import MODULES
+
+BUFFERS = ("viewZ", "viewNormal", "albedo", "visibility_raw", "visibility", "direct", "ambient", "radiance", "image")
+
+
+def same(one: aolab.Frame, other: aolab.Frame) -> bool:
+    return all(np.array_equal(one[name], other[name], equal_nan=name.startswith("vis")) for name in one.buffers)
+
+
+# --- determinism
+
+
+@pytest.mark.parametrize("settings", [{}, {"filter": "bilateral", "scale": 0.5}, {"accumulate": 3}])
+def test_the_same_seed_gives_the_same_frame(lab, boxes, settings):
+    first = lab.render(boxes, "ssao", seed=5, **settings)
+    lab.render(boxes, "none", size=(33, 7))
+    assert same(lab.render(boxes, "ssao", seed=5, **settings), first)
+    assert same(Lab().render(boxes, "ssao", seed=5, size=lab.size, **settings), first)
+
+
+def test_other_seeds_are_other_sample_sets(lab, boxes):
+    frames = [lab.render(boxes, "ssao", seed=seed, filter="none")["visibility"] for seed in range(4)]
+    for i in range(4):
+        for j in range(i):
+            assert (frames[i] != frames[j])[np.isfinite(frames[i])].mean() > 0.01
+
+
+def test_accumulating_averages_the_frames_of_successive_seeds(lab, boxes):
+    settings = {"filter": "none", "radius": 1.0}
+    alone = [lab.render(boxes, "ssao", seed=seed, **settings)["visibility"] for seed in range(3, 7)]
+    together = lab.render(boxes, "ssao", seed=3, accumulate=4, **settings)["visibility"]
+    np.testing.assert_allclose(together, np.mean(alone, axis=0), atol=1e-3)  # each alone is a half float
+
+
+def test_accumulating_converges(lab, boxes):
+    settings = {"filter": "none", "radius": 1.0, "directions": 4}
+    truth = lab.render(boxes, "ssao", seed=1000, accumulate=256, **settings)["visibility"]
+    error = {
+        count: np.sqrt(np.nanmean((lab.render(boxes, "ssao", accumulate=count, **settings)["visibility"] - truth) ** 2))
+        for count in (1, 4, 16, 64)
+    }
+    assert error[4] < 0.65 * error[1]  # independent sets halve it
+    assert error[16] < 0.65 * error[4]
+    assert error[64] < 0.75 * error[16]
+
+
+# --- frames
+
+
+def test_a_frame_keeps_its_content_while_others_are_rendered(lab, boxes, plane):
+    """Buffers are read when asked for: other frames, sizes and modules come between, and must not draw over them."""
+    held = lab.render(boxes, "ssao", seed=1)
+    expected = lab.render(boxes, "ssao", seed=1)
+    reference = {name: expected[name].copy() for name in expected.buffers}
+    for seed in range(6):
+        lab.render(plane, "ssao", seed=seed, accumulate=2, scale=0.5)
+        lab.render(boxes, "none", size=(20, 30))
+    for name in BUFFERS:
+        np.testing.assert_array_equal(held[name], reference[name], err_msg=name)
+
+
+def test_many_frames_may_be_held(lab, boxes):
+    frames = [lab.render(boxes, "ssao", seed=seed) for seed in range(5)]
+    for seed, frame in enumerate(frames):
+        assert same(frame, lab.render(boxes, "ssao", seed=seed))
+
+
+def test_textures_of_dropped_frames_are_used_again(boxes):
+    lab = Lab((32, 24))
+    textures = set()
+    for seed in range(10):
+        frame = lab.render(boxes, "ssao", seed=seed)
+        textures |= {texture.glo for texture in frame.textures.values()}  # type: ignore[union-attr]
+        del frame
+        gc.collect()
+    assert len(textures) <= 2 * len(BUFFERS)
+
+
+def test_a_module_that_fails_loses_nothing(lab, boxes):
+    """Textures that were taken before the failure come back."""
+
+    class Broken(aolab.Module):
+        shader = "out float visibility;\nvoid main() { visibility = missing; }\n"
+
+    fresh = Lab((16, 16))
+    for _ in range(8):
+        with pytest.raises(aolab.ShaderError, match="missing"):
+            fresh.render(boxes, Broken())
+    assert sum(len(free) for free in fresh._pool._free.values()) == 3  # one G-buffer
+    assert same(fresh.render(boxes, "ssao"), lab.render(boxes, "ssao", size=(16, 16)))
+
+
+def test_sizes_may_change_back_and_forth_and_leave_nothing_behind(lab, boxes):
+    fresh = Lab()
+    for _ in range(6):
+        for size in ((40, 30), (17, 5), (1, 1)):
+            assert same(fresh.render(boxes, "ssao", size=size), lab.render(boxes, "ssao", size=size))
+    assert len(fresh._pool._framebuffers) < 20
+    assert {size for (size, _), free in fresh._pool._free.items() if free} == {(1, 1)}
+
+
+@pytest.mark.parametrize("size", [(1, 1), (1, 7), (7, 1), (17, 9), (33, 64)])
+@pytest.mark.parametrize("module", MODULES)
+def test_any_size(lab, boxes, module, size):
+    for settings in ({"filter": "box4"}, {"filter": "bilateral", "scale": 0.3}):
+        frame = lab.render(boxes.replace(lights=(DirectionalLight((1, -2, -1)),)), module, size=size, **settings)
+        assert frame.size == size
+        assert frame.image.shape == (size[1], size[0], 3)
+        for name in frame.buffers:
+            assert np.isfinite(frame[name][frame.mask] if frame[name].shape[:2] == frame.mask.shape else 0).all(), name
+
+
+def test_a_frame_says_how_it_was_made(lab, boxes):
+    camera = Camera((0, 4, 4), (0, 0, 0), fov=30)
+    frame = lab.render(boxes, "ssao", camera=camera, seed=3, accumulate=2, exposure=1.5, tone_map="linear", radius=0.7)
+    info = frame.info
+    assert (info["module"], info["seed"], info["accumulate"], info["size"]) == ("ssao", 3, 2, [64, 48])
+    assert (info["exposure"], info["tone_map"], info["parameters"]["radius"]) == (1.5, "linear", 0.7)
+    assert Camera(**info["camera"]) == camera
+    assert info["triangles"] == 2 + 3 * 12
+    assert info["renderer"]
+    assert json.loads(json.dumps(info)) == info | {"camera": {**info["camera"], **_lists(info["camera"])}}
+    assert frame.frame_ms >= sum(frame.timings.values()) > 0
+    assert {"g_buffer", "ssao", "filter visibility", "direct", "ambient", "compose"} <= set(frame.timings)
+    assert repr(frame) == f"<Frame 64x48 ssao: {', '.join(frame.buffers)}>"
+    assert sorted(BUFFERS) == frame.buffers
+
+
+def _lists(values: dict) -> dict:
+    return {key: list(value) for key, value in values.items() if isinstance(value, tuple)}
+
+
+def test_a_frame_shows_itself_in_a_notebook(lab, boxes):
+    import io
+
+    frame = lab.render(boxes)
+    np.testing.assert_array_equal(np.asarray(Image.open(io.BytesIO(frame._repr_png_()))), frame.image)
+
+
+def test_an_unknown_buffer_is_refused_with_the_known_ones(lab, plane):
+    frame = lab.render(plane, "none")
+    with pytest.raises(ParameterError, match=r"no buffer 'visibilty'; did you mean 'visibility'\? .*albedo"):
+        frame["visibilty"]
+
+
+def test_buffers_are_saved_by_name(lab, boxes, tmp_path):
+    frame = lab.render(boxes, "ssao")
+    frame.save_buffers(tmp_path / "all.npz")
+    with np.load(tmp_path / "all.npz") as saved:
+        assert sorted(saved) == frame.buffers
+        assert all(np.array_equal(saved[name], frame[name], equal_nan=True) for name in saved)
+
+
+# --- what is asked for
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"size": (0, 5)}, r"size = 0x5: each side must be from 1 to \d+ pixels"),
+        ({"size": (1.5, 2)}, r"size = \(1\.5, 2\) is not two whole numbers"),
+        ({"size": (5,)}, r"size = \(5,\) is not two whole numbers"),
+        ({"seed": -1}, r"seed = -1 is not a whole number from 0 on"),
+        ({"accumulate": 0}, r"accumulate = 0 is not a whole number from 1 on"),
+        ({"accumulate": 1.5}, r"accumulate = 1.5 is not"),
+        ({"exposure": 0}, r"exposure = 0 is not a number above 0"),
+        ({"exposure": float("nan")}, r"exposure = nan"),
+        ({"tone_map": "aces"}, r"tone_map = 'aces' is not one of: filmic, linear"),
+        ({"module": "sao"}, r"no module 'sao'; did you mean 'ssao'\?"),
+        ({"radus": 1}, r"ssao has no parameter 'radus'; did you mean 'radius'\?"),
+        ({"radius": -1}, r"ssao: radius = -1 is not valid: float or auto, > 0, in scene units"),
+        ({"radius": float("nan")}, r"ssao: radius = nan is not valid"),
+        ({"radius": float("inf")}, r"ssao: radius = inf is not valid"),
+        ({"directions": 0}, r"ssao: directions = 0 is not valid: int, ≥ 1, ≤ 256"),
+        ({"directions": 2.5}, r"ssao: directions = 2.5 is not valid"),
+        ({"filter": "blur"}, r"ssao: filter = 'blur' is not valid: none or box4 or bilateral"),
+        ({"directions": 0, "bias": 3}, r"directions = 0 is not valid.*; ssao: bias = 3 is not valid: .*in radii"),
+    ],
+)
+def test_what_cannot_be_rendered_is_refused(lab, plane, arguments, message):
+    with pytest.raises(ParameterError, match=message):
+        lab.render(plane, **arguments)
+
+
+def test_numpys_numbers_are_numbers(lab, plane):
+    settings = {"directions": np.int64(8), "radius": np.float32(0.5), "seed": np.int64(2), "accumulate": np.int32(2)}
+    frame = lab.render(plane, size=tuple(np.array([16, 8])), **settings)
+    json.dumps(frame.info)
+    assert frame.size == (16, 8)
+
+
+def test_a_module_is_a_name_a_class_or_an_instance(lab, boxes):
+    by_name = lab.render(boxes, "ssao", directions=8)
+    assert same(lab.render(boxes, aolab.SSAO, directions=8), by_name)
+    assert same(lab.render(boxes, aolab.SSAO(directions=8)), by_name)
+    assert same(lab.render(boxes, aolab.SSAO(directions=4), directions=8), by_name)
+
+
+def test_render_without_a_lab_is_a_lab_of_its_own(boxes, lab):
+    frame = aolab.render(boxes, "ssao", size=lab.size, seed=2, directions=8)
+    assert same(frame, lab.render(boxes, "ssao", seed=2, directions=8))
+    assert aolab.render("boxes", "none", size=(8, 6)).info["scene"] == "boxes"
+
+
+def test_the_scene_may_be_a_mesh_of_trimesh(lab):
+    import trimesh
+
+    frame = lab.render(trimesh.creation.box(), "ssao")
+    assert frame.mask.any()
+
+
+def test_meshes_and_environments_that_nobody_holds_are_freed(boxes):
+    import weakref
+
+    lab = Lab((16, 16))
+    scene = small_scenes.boxes()
+    mesh = weakref.ref(scene.instances[0].mesh)
+    lab.render(scene, "none")
+    del scene
+    lab.render(boxes, "none")  # the shadow maps' key holds the last scene's instances until now
+    gc.collect()
+    assert mesh() is None
