@@ -25,7 +25,7 @@ def parameter(
 class Parameters(BaseModel):
     """Values with names, types, ranges and units. Raises `ParameterError` for an unknown name or a wrong value."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, use_attribute_docstrings=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False)
 
     if not TYPE_CHECKING:  # type checkers see the fields as arguments
 

@@ -13,8 +13,8 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 def draw(curve: Curve) -> Figure:
     """Both axes logarithmic. Stars are the modules' defaults; the dotted line is what the truth itself may be off."""
-    figure = Figure((11.5, 6.2), dpi=110, facecolor="white")
-    axes = figure.add_axes((0.07, 0.125, 0.6, 0.79))
+    figure = Figure((12.5, 6.2), dpi=110, facecolor="white")
+    axes = figure.add_axes((0.065, 0.125, 0.59, 0.79))
     names = list(dict.fromkeys(point.module for point in curve.points))
     for index, name in enumerate(names):
         color, marker = COLORS[index % len(COLORS)], MARKERS[index % len(MARKERS)]
@@ -38,9 +38,9 @@ def draw(curve: Curve) -> Figure:
         axis.set_minor_formatter("")
     axes.grid(which="major", color="0.9")
     axes.set_axisbelow(True)
-    axes.legend(fontsize=9, loc="best")
+    axes.legend(fontsize=9, loc="lower left", bbox_to_anchor=(1.02, -0.01), borderaxespad=0, frameon=False)
     axes.set_title(f"Error against time: {curve.title}", fontsize=11, loc="left")
-    figure.text(0.07, 0.02, curve.place, fontsize=8.5, color="0.3")
+    figure.text(0.065, 0.02, curve.place, fontsize=8.5, color="0.3")
     return figure
 
 

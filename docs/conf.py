@@ -20,6 +20,7 @@ nb_execution_mode = "auto"
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
 nb_merge_streams = True
+nb_render_markdown_format = "myst"  # for tables
 
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
@@ -31,6 +32,7 @@ maximum_signature_line_length = 88
 
 html_theme = "furo"
 html_title = f"aolab {release}"
-html_static_path: list[str] = []
+html_static_path = ["_static"]
+html_css_files = ["aolab.css"]
 html_show_copyright = False
 html_math_renderer = "mathml"

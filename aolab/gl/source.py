@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from math import isfinite
 from pathlib import Path
 
 from .. import paths
@@ -80,13 +81,14 @@ class _Builder:
 
     def include(self, name: str, chain: list[str], where: str) -> None:
         name = self.aliases.get(name, name)
-        if name in chain:
-            raise ShaderError(f"{where}: include cycle: {' -> '.join([*chain[chain.index(name) :], name])}")
-        root = paths.glsl()
+        root = paths.glsl().resolve()
         path = (root / name).resolve()
-        if not path.is_relative_to(root.resolve()) or not path.is_file():
+        if not path.is_relative_to(root) or not path.is_file():
             known = [str(p.relative_to(root)) for p in root.rglob("*") if p.suffix in (".glsl", ".frag", ".vert")]
             raise ShaderError(f"{where}: no file 'glsl/{name}'{suggestion(name, [*known, *self.aliases])}")
+        name = path.relative_to(root).as_posix()  # one spelling, whatever was written
+        if name in chain:
+            raise ShaderError(f"{where}: include cycle: {' -> '.join([*chain[chain.index(name) :], name])}")
         if path in self.files:
             return  # once only
         self.files.add(path)
@@ -117,9 +119,9 @@ class _Builder:
         value = self.constants[name]
         if kind == "bool":
             return "true" if value else "false"
-        if kind == "float":
+        if kind == "float" and isfinite(value):
             return repr(float(value))
-        if float(value) != int(value):
+        if not isfinite(value) or float(value) != int(value):
             raise ShaderError(f"{where}: constant '{name}' is {kind}, but was given {value}")
         return f"{int(value)}{'u' if kind == 'uint' else ''}"
 

@@ -15,8 +15,8 @@ class Kind:
     `picture` is what PSNR, SSIM and FLIP compare, values in [0, 1]: "direct", the values themselves as a screen would
     show them; "tone mapped", linear radiance as a render shows itself (filmic, exposure 1, sRGB), for which FLIP is
     HDR-FLIP of the linear values; None where they make no picture, and PSNR, SSIM and FLIP have no meaning.
-    `error` is what a pixel's error is: "signed", the mean difference of its channels; "angle" between directions; "norm"
-    of the difference, which for coefficients is the root of the integral of the squared difference (Parseval).
+    `error` is a pixel's error: "signed", the mean difference of its channels; "angle" between directions; "norm" of the
+    difference, which for coefficients is the root of the integral of the squared difference (Parseval).
     """
 
     unit: str

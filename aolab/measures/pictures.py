@@ -95,7 +95,7 @@ def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> tupl
 
 
 def _bar(figure: Figure, mappable: ScalarMappable, largest: float, place: Axes, one: BufferComparison) -> None:
-    beyond = largest > (mappable.norm.vmax or 0) * (1 + 1e-6)
+    beyond = largest > mappable.get_clim()[1] * (1 + 1e-6)  # type: ignore[operator]
     pointed = "both" if one.kind.error == "signed" else "max"
     bar = figure.colorbar(mappable, cax=place, extend=pointed if beyond else "neither")
     bar.ax.tick_params(labelsize=8)

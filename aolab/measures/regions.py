@@ -62,7 +62,10 @@ def thin_occluders(view_z: np.ndarray, width: int = THIN_PX) -> np.ndarray:
     near = nearness(view_z)
     steps = np.arange(width) - (width - 1) / 2
     disc = steps**2 + steps[:, None] ** 2 <= (width / 2) ** 2
-    pieces, _ = label(near - grey_opening(near, footprint=disc) > GAP * near, np.ones((3, 3)))
+    # continued by its slope beyond the image's edge, a plane has no ridge there
+    opened = grey_opening(np.pad(near, width, mode="reflect", reflect_type="odd"), footprint=disc)
+    pieces = np.zeros(near.shape, np.int32)
+    label(near - opened[width:-width, width:-width] > GAP * near, np.ones((3, 3)), pieces)
     long = [max(side.stop - side.start for side in box) >= width for box in find_objects(pieces)]
     thin = np.array([False, *long])[pieces]
     return binary_dilation(thin, np.ones((3, 3)), iterations=width) & np.isfinite(view_z)

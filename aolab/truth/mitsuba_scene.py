@@ -1,4 +1,4 @@
-"""A scene in Mitsuba's terms: arrays, and a description in JSON, which `mitsuba_worker.py` makes Mitsuba's objects of."""
+"""A scene in Mitsuba's terms: arrays and a description in JSON, of which `mitsuba_worker.py` makes Mitsuba's objects."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -10,7 +10,7 @@ from ..environment import Environment
 from ..errors import SceneError
 from ..lights import DirectionalLight, Light, PointLight, SpotLight
 from ..loading.images import linear_from_srgb
-from ..mesh import Mesh, Texture
+from ..mesh import Mesh
 from ..scene import Instance, Scene
 from ..view import View
 
@@ -95,7 +95,7 @@ def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre:
     arrays[f"{name}.faces"] = mesh.faces
     if mesh.material.texture is not None:
         uv = np.zeros((len(vertices), 2), np.float32) if mesh.uv is None else mesh.uv
-        arrays[f"{name}.uv"] = uv
+        arrays[f"{name}.uv"] = uv * np.float32((1, -1)) + np.float32((0, 1))  # v down
 
 
 def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str, Any]:

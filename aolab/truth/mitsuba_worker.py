@@ -65,7 +65,7 @@ def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:
         parameters["vertex_texcoords"] = uv.ravel()
     parameters.update()
     if colors is not None:
-        mesh.add_attribute(VERTEX_COLOR, 3, colors.ravel())
+        mesh.add_attribute(VERTEX_COLOR, 3, colors.ravel().tolist())
     return mesh
 
 

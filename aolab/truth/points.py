@@ -20,7 +20,7 @@ EPSILON = float(np.finfo(np.float32).eps)
 
 @dataclass(frozen=True)
 class Points:
-    """Some of the pixels that show a surface. Positions are in the coordinates of `World`; vectors are in world space."""
+    """Some of the pixels that show a surface. Positions are in the coordinates of `World`; vectors in world space."""
 
     position: np.ndarray  # (n, 3) float32: where rays start, lifted off the surface
     normal: np.ndarray  # (n, 3) float32, unit: the G-buffer's, on the viewer's side
@@ -31,7 +31,7 @@ class Points:
 
 
 class Surface:
-    """The surface at the centre of every pixel that shows one; `pixel` holds their indices, row-major from the top left.
+    """The surface at the centre of every pixel that shows one; `pixel` holds their indices, row-major from the top.
 
     The position is rebuilt from viewZ and moved onto the plane of the triangle that a ray through the pixel meets,
     then lifted by `World.lift` along that triangle's normal, on the viewer's side. Where ray and rasteriser disagree

@@ -57,7 +57,7 @@ def _cores() -> int:
 @contextmanager
 def _bar(total: int, progress: bool | None) -> Iterator[Callable[[int], object]]:
     """A function that advances a bar on standard error, which is shown if `progress`, or for None on a terminal."""
-    from tqdm.auto import tqdm
+    from tqdm import tqdm
 
     with tqdm(
         total=total, desc="reference", unit="px", unit_scale=True, disable=None if progress is None else not progress

@@ -94,7 +94,7 @@ def _table(head: list[str], rows: list[list[str]]) -> str:
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
-    app.add_directive("module", ModuleFacts)
+    app.add_directive("module-facts", ModuleFacts)
     app.add_directive("parameters", ParameterTable)
     app.add_directive("modules", ModuleTable)
     app.add_directive("scenes", SceneTable)
