@@ -1,4 +1,4 @@
-"""A scene in Mitsuba's terms: arrays and a description in JSON, of which `mitsuba_worker.py` makes Mitsuba's objects."""
+"""A scene in Mitsuba's terms: arrays, and a description in JSON, for `mitsuba_worker.py` to make objects of."""
 
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -95,7 +95,7 @@ def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre:
     arrays[f"{name}.faces"] = mesh.faces
     if mesh.material.texture is not None:
         uv = np.zeros((len(vertices), 2), np.float32) if mesh.uv is None else mesh.uv
-        arrays[f"{name}.uv"] = uv * np.float32((1, -1)) + np.float32((0, 1))  # v down
+        arrays[f"{name}.uv"] = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)  # Mitsuba's v grows from the first row down
 
 
 def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str, Any]:

@@ -33,7 +33,9 @@ def test_border_by_a_sphere_is_wider_where_surfaces_are_near():
     view_z = flat(100, 100)
     view_z[:, :50] = -5
     reach = projected_px(view_z, radius=1.0, fov=90)
-    assert reach[0, [0, 99]] == pytest.approx([10, 5])  # 100 rows are 2 units at distance 1, so 20 at 10: five pixels a unit
+    assert reach[0, [0, 99]] == pytest.approx(
+        [10, 5]
+    )  # 100 rows are 2 units at distance 1, so 20 at 10: five pixels a unit
     mask = border((100, 100), reach)
     middle = mask[50]
     assert (middle[:50].sum(), middle[50:].sum()) == (10, 5)
