@@ -126,10 +126,10 @@ def curve(
     for module in _chosen(modules, judge, scene):
         like = module if hasattr(module, "radius") else judge
         truth = reference(scene, size=size, rays=rays, like=like, seed=seed, buffers=("visibility", "standard_error"))
-        noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
         for one, varied in settings(module):
             error = visibility_error(lab.render(scene, one, seed=seed), truth)  # compiles, too
             variants.append((one, varied, one == module, error))
+        noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
 
     times = _times(lab, scene, [variant[0] for variant in variants], frames, shared)
     points = [

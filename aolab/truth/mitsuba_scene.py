@@ -163,5 +163,5 @@ def _environment(arrays: dict[str, np.ndarray], environment: Environment) -> dic
     # Mitsuba's first and last row lie at the poles, ours half a row away from them, and ours goes on evenly from
     # there: a row at every half row of ours is the same function
     rows = np.repeat(np.pad(radiance, ((1, 1), (0, 0), (0, 0)), "edge"), 2, axis=0)
-    arrays["environment"] = (rows[1:-2] + rows[2:-1]) / 2
+    arrays["environment"] = radiance
     return {"type": "envmap", "image": "environment"}
