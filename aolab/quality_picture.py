@@ -12,7 +12,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
 def draw(curve: Curve) -> Figure:
-    """Both axes logarithmic. Stars are the modules' defaults; a dotted line, where in reach, is the truth's own error."""
+    """Both axes logarithmic. Stars are the modules' defaults; a dotted line, if in reach, is the truth's own error."""
     figure = Figure((12.5, 6.2), dpi=110, facecolor="white")
     axes = figure.add_axes((0.065, 0.125, 0.59, 0.79))
     names = list(dict.fromkeys(point.module for point in curve.points))

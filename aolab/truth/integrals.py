@@ -38,7 +38,7 @@ class Setting:
 
 
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
-    """How much an occluder counts at a squared distance in squared radii: the twin of glsl/lib/falloff.glsl."""
+    """How much an occluder counts at a squared distance in squared radii: `aolab.kernels.influence` in single precision."""
     return np.clip((1 - squared_distance) / np.float32(max(falloff, 1e-4)), 0, 1)
 
 

@@ -153,7 +153,7 @@ def _falloff(light: SpotLight) -> np.ndarray:
     side = ((np.arange(SPOT_TEXELS) + 0.5) / SPOT_TEXELS * 2 - 1) * np.tan(np.radians(light.outer))
     cosine = 1 / np.sqrt(1 + side[:, None] ** 2 + side**2)
     inner, outer = np.cos(np.radians([light.inner, light.outer]))
-    return (((cosine - outer) / (inner - outer)).clip(0, 1) ** 2).astype(np.float32)[..., None]
+    return (((cosine - outer) / (inner - outer)).clip(0, 1) ** 1).astype(np.float32)[..., None]
 
 
 def _environment(arrays: dict[str, np.ndarray], environment: Environment) -> dict[str, Any]:
@@ -163,5 +163,5 @@ def _environment(arrays: dict[str, np.ndarray], environment: Environment) -> dic
     # Mitsuba's first and last row lie at the poles, ours half a row away from them, and ours goes on evenly from
     # there: a row at every half row of ours is the same function
     rows = np.repeat(np.pad(radiance, ((1, 1), (0, 0), (0, 0)), "edge"), 2, axis=0)
-    arrays["environment"] = radiance
+    arrays["environment"] = (rows[1:-2] + rows[2:-1]) / 2
     return {"type": "envmap", "image": "environment"}
