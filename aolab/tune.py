@@ -164,7 +164,7 @@ def _search(
     progress: bool | None,
 ) -> Module:
     """The module with the least mean RMSE over `views`; what does not matter for that stays as it was."""
-    from tqdm.auto import tqdm
+    from tqdm import tqdm
 
     def score(tried: Any) -> float:
         return fmean(_error(lab, tried, view)["rmse"] for view in views)

@@ -87,7 +87,7 @@ def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre:
     assert mesh.normals is not None  # Mesh makes them
     linear, translation = instance.world_from_local[:3, :3], instance.world_from_local[:3, 3]
     cofactor = np.linalg.det(linear) * np.linalg.inv(linear).T
-    normals = mesh.normals.astype(np.float64) @ cofactor.T
+    normals = mesh.normals.astype(np.float64) @ linear.T
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     vertices = (mesh.vertices.astype(np.float64) @ linear.T + translation - centre) * scale
     arrays[f"{name}.vertices"] = vertices.astype(np.float32)
@@ -153,7 +153,7 @@ def _falloff(light: SpotLight) -> np.ndarray:
     side = ((np.arange(SPOT_TEXELS) + 0.5) / SPOT_TEXELS * 2 - 1) * np.tan(np.radians(light.outer))
     cosine = 1 / np.sqrt(1 + side[:, None] ** 2 + side**2)
     inner, outer = np.cos(np.radians([light.inner, light.outer]))
-    return (((cosine - outer) / (inner - outer)).clip(0, 1) ** 1).astype(np.float32)[..., None]
+    return (((cosine - outer) / (inner - outer)).clip(0, 1) ** 2).astype(np.float32)[..., None]
 
 
 def _environment(arrays: dict[str, np.ndarray], environment: Environment) -> dict[str, Any]:
