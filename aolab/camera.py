@@ -38,10 +38,10 @@ class Camera:
             raise SceneError(f"camera: eye and target are both {self.eye}; it looks nowhere")
         if np.linalg.norm(np.cross(forward, self.up)) <= 1e-9 * np.linalg.norm(forward) * np.linalg.norm(self.up):
             raise SceneError(f"camera: up = {self.up} is parallel to the view direction; choose another up")
-        if self.near is not None and not self.near > 0:
-            raise SceneError(f"camera: near = {self.near} must be above 0")
-        if self.near is not None and self.far is not None and not self.far > self.near:
-            raise SceneError(f"camera: far = {self.far} must be above near = {self.near}")
+        if self.near is not None and not 0 < self.near < np.inf:
+            raise SceneError(f"camera: near = {self.near} must be finite and above 0")
+        if self.far is not None and not (self.near or 0) < self.far < np.inf:
+            raise SceneError(f"camera: far = {self.far} must be finite and above near = {self.near or 0}")
 
     @property
     def view_from_world(self) -> np.ndarray:

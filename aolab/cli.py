@@ -17,7 +17,6 @@ if TYPE_CHECKING:
 app = typer.Typer(
     name="aolab",
     help="A laboratory for ambient lighting in image space.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -28,7 +27,7 @@ Json = Annotated[bool, typer.Option("--json", help="For programs: print JSON.")]
 def main() -> None:
     """Entry point: like `app()`, with our own errors told in one line (`--debug` shows where they came from)."""
     debug = "--debug" in sys.argv
-    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"]
+    arguments = [argument for argument in sys.argv[1:] if argument != "--debug"] or ["--help"]
     warnings.simplefilter("always", Notice)
     warnings.showwarning = _show_notice
     try:

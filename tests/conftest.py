@@ -73,7 +73,7 @@ def models() -> Path:
 def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
     """Evaluates GLSL: `glsl("lib/space.glsl", "result.xyz = viewPosAt(x.xy, x.z, a);", x, a=(1, 2, 3, 4))`.
 
-    Runs the statements once for each row of `x` (n, 4) and returns `result` (n, 4), both float32; keywords are vec4 uniforms.
+    Runs the statements once for each row of `x` (n, 4) and returns `result` (n, 4), both float32; keywords are vec4s.
     """
     painter = Painter(Programs(), Pool(), {})
 
@@ -83,7 +83,8 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
         declared = "".join(f"uniform vec4 {name};\n" for name in uniforms)
         shader = (
             f'#include "{include}"\nuniform sampler2D rows;\n{declared}out vec4 value;\nvoid main() {{\n'
-            f"vec4 x = texelFetch(rows, ivec2(gl_FragCoord.xy), 0), result = vec4(0.0);\n{statements}\nvalue = result;\n}}\n"
+            "vec4 x = texelFetch(rows, ivec2(gl_FragCoord.xy), 0), result = vec4(0.0);\n"
+            f"{statements}\nvalue = result;\n}}\n"
         )
         size = len(x), 1
         rows = {"rows": texture.make(size, "RGBA32F", x.tobytes())}

@@ -56,7 +56,7 @@ def test_nothing_bleeds_across_a_depth_gap(lab, filter, scale):
 
 @pytest.mark.parametrize("filter", FILTERS)
 def test_nothing_bleeds_around_a_sharp_edge_between_two_faces(lab, filter):
-    """The two walls of a corner meet at 90°. The bilateral filter tells them apart by the normal; box4 may mix 4 pixels."""
+    """Two walls meet at 90°: the bilateral filter tells them apart by the normal, and box4 mixes 4 pixels at most."""
     left = small_scenes.quad((-3, -3, 0), (3, 0, -3), (0, 6, 0), Material((1.0, 0.0, 0.0)))
     right = small_scenes.quad((0, -3, -3), (3, 0, 3), (0, 6, 0), Material((0.0, 0.0, 0.0)))
     scene = small_scenes.of(left, right, camera=Camera((0, 0, 5), (0, 0, 0)))
@@ -94,7 +94,7 @@ def test_the_background_takes_no_part(lab):
     scene = small_scenes.of(small_scenes.quad((-1, -1, 0), (2, 0, 0), (0, 2, 0)), camera=Camera((0, 0, 4), (0, 0, 0)))
     for filter in FILTERS:
         for scale in (1.0, 0.5):
-            frame = lab.render(scene, Pattern(filter=filter, scale=scale), size=(40, 40))
+            frame = lab.render(scene, Pattern, filter=filter, scale=scale, size=(40, 40))
             assert np.isnan(frame["visibility"][~frame.mask]).all()
             np.testing.assert_allclose(frame["visibility"][frame.mask], 0.625, atol=2e-3)
 
@@ -104,7 +104,7 @@ def test_windows_larger_than_the_image(lab, boxes, size):
     camera = Camera((0, 4, 0.01), (0, 0, 0), fov=60)
     for filter in FILTERS:
         for scale in (1.0, 0.5, 0.125):
-            frame = lab.render(boxes, Pattern(filter=filter, scale=scale), size=size, camera=camera)
+            frame = lab.render(boxes, Pattern, filter=filter, scale=scale, size=size, camera=camera)
             np.testing.assert_allclose(frame["visibility"], 0.625, atol=2e-3)
 
 

@@ -6,6 +6,7 @@ import small_scenes
 
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, PointLight, Scene, SpotLight, Texture
+from aolab.lights import Light
 
 DARK = Environment.constant(0.0)
 ALBEDO = Material((0.8, 0.5, 0.25))
@@ -16,13 +17,20 @@ def floor_under(*lights, camera=DOWN, sky=DARK, material=ALBEDO, more=()) -> Sce
     return small_scenes.of(small_scenes.floor(4, material), *more, camera=camera, lights=lights, sky=sky)
 
 
-def kinds(shadow: bool = True) -> dict[str, aolab.DirectionalLight | aolab.PointLight | aolab.SpotLight]:
+def kinds(shadow: bool = True) -> dict[str, Light]:
     """A light of each kind, from the upper left."""
     return {
         "directional": DirectionalLight((1, -2, 0.3), shadow=shadow),
         "point": PointLight((-2, 4, -0.6), (30, 30, 30), shadow=shadow),
         "spot": SpotLight((-2, 4, -0.6), (0.5, -1, 0.15), (30, 30, 30), inner=30, outer=45, shadow=shadow),
     }
+
+
+def towards(light: Light, position: np.ndarray) -> np.ndarray:
+    """(H, W, 3): from each position to the light, or far out of the scene towards a sun."""
+    if isinstance(light, DirectionalLight):
+        return np.broadcast_to(-20 * np.asarray(light.direction), position.shape)
+    return np.asarray(light.position) - position
 
 
 # --- irradiance
@@ -137,8 +145,7 @@ def test_a_boxs_shadow_lies_where_geometry_says(lab, kind):
     frame = lab.render(scene, "none", size=(160, 120))
     position = small_scenes.world_positions(frame, DOWN)
     on_floor = np.abs(position[..., 1]) < 1e-3
-    way = -np.asarray(light.direction) * 20 if kind == "directional" else np.asarray(light.position) - position
-    way = np.broadcast_to(way, position.shape)
+    way = towards(light, position)
 
     def in_shadow(grow: float) -> np.ndarray:
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -146,7 +153,9 @@ def test_a_boxs_shadow_lies_where_geometry_says(lab, kind):
         enter, leave = np.minimum(a, b).max(axis=-1), np.maximum(a, b).min(axis=-1)
         return (enter < leave) & (leave > 0) & (enter < 1)
 
-    lit = lab.render(floor_under(kinds(shadow=False)[kind], more=[small_scenes.box(low, high)]), "none", size=(160, 120))
+    lit = lab.render(
+        floor_under(kinds(shadow=False)[kind], more=[small_scenes.box(low, high)]), "none", size=(160, 120)
+    )
     deep = on_floor & in_shadow(-0.03)  # a texel of these maps is 0.006 to 0.012 units, and 3.5 of them are blended
     free = on_floor & ~in_shadow(0.03)
     assert (lit["direct"][deep, 0] > 0.01).sum() > 200
@@ -171,7 +180,9 @@ def test_a_lit_plane_has_no_acne(lab, kind, degrees):
         return SpotLight(position, tuple(way), (25, 25, 25), inner=20, outer=30, shadow=shadow)
 
     for camera in (DOWN, Camera((0, 1, 5), (0, 0, 0))):
-        with_map, without = (lab.render(floor_under(light(on), camera=camera), "none")["direct"] for on in (True, False))
+        with_map, without = (
+            lab.render(floor_under(light(on), camera=camera), "none")["direct"] for on in (True, False)
+        )
         assert without.any()
         np.testing.assert_array_equal(with_map, without)
 
@@ -185,9 +196,8 @@ def test_a_closed_sphere_has_no_acne_where_it_is_lit(lab, kind):
     position = small_scenes.world_positions(frames[0], camera)
     normal = position - (0, 1.5, 0)
     on_ball = np.abs(np.linalg.norm(normal, axis=-1) - 1) < 1e-2
-    light = kinds()[kind]
-    towards = -np.asarray(light.direction) if kind == "directional" else np.asarray(light.position) - position
-    cosine = (normal * towards).sum(axis=-1) / np.linalg.norm(towards, axis=-1)
+    way = towards(kinds()[kind], position)
+    cosine = (normal * way).sum(axis=-1) / np.linalg.norm(way, axis=-1)
     facing = on_ball & (cosine > 0.15)
     assert facing.sum() > 200
     # where two of the triangles meet, the blended comparisons reach over the edge: 2 %
@@ -208,7 +218,9 @@ def test_shadows_follow_the_lights_and_the_geometry(lab):
     first = lab.render(floor_under(sun, more=[post]), "none")["direct"]
     for scene in (floor_under(evening, more=[post]), floor_under(sun, more=[moved])):
         assert not np.array_equal(lab.render(scene, "none")["direct"], first)
-        np.testing.assert_array_equal(lab.render(scene, "none")["direct"], aolab.Lab((64, 48)).render(scene, "none")["direct"])
+        np.testing.assert_array_equal(
+            lab.render(scene, "none")["direct"], aolab.Lab((64, 48)).render(scene, "none")["direct"]
+        )
     np.testing.assert_array_equal(lab.render(floor_under(sun, more=[post]), "none")["direct"], first)
 
 
@@ -227,7 +239,9 @@ def test_holes_of_a_cut_out_texture_let_light_through(lab):
 
 def test_too_many_shadow_tiles_are_refused_with_the_way_out(lab):
     lights = tuple(PointLight((x, 2, 0)) for x in range(6))
-    with pytest.raises(aolab.SceneError, match=r"6 lights \(6 of them points.*36 shadow tiles.*limit is 32.*shadow=False"):
+    with pytest.raises(
+        aolab.SceneError, match=r"6 lights \(6 of them points.*36 shadow tiles.*limit is 32.*shadow=False"
+    ):
         lab.render(floor_under(*lights), "none")
     enough = (*lights[:5], PointLight((5, 2, 0), shadow=False))
     assert lab.render(floor_under(*enough), "none")["direct"].any()
@@ -267,7 +281,9 @@ def test_meshes_of_one_face_each_way_are_lit_from_the_viewers_side(lab):
     sheet = small_scenes.floor(2, ALBEDO)
     below = Camera((0, -6, 0), (0, 0, 0), up=(0, 0, 1))
     lit, unlit = (
-        lab.render(Scene((Instance(Mesh(sheet.vertices, sheet.faces)),), (DirectionalLight((0, y, 0)),), DARK, below), "none")
+        lab.render(
+            Scene((Instance(Mesh(sheet.vertices, sheet.faces)),), (DirectionalLight((0, y, 0)),), DARK, below), "none"
+        )
         for y in (1, -1)
     )
     assert lit["direct"][24, 32, 0] > 0.1

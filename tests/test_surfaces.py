@@ -68,7 +68,9 @@ def test_the_nearest_surface_wins_whatever_the_order(lab):
         assert frame["albedo"][0, 0].tolist() == [1, 0, 0]
 
 
-@pytest.mark.parametrize("scale", [(1, 1, 1), (2, 1, 1), (1, 1, 0.2), (-1, 1, 1), (1, -3, 0.5), (-1, -1, -1), (1e-3, 1, 1)])
+@pytest.mark.parametrize(
+    "scale", [(1, 1, 1), (2, 1, 1), (1, 1, 0.2), (-1, 1, 1), (1, -3, 0.5), (-1, -1, -1), (1e-3, 1, 1)]
+)
 def test_normals_of_scaled_and_mirrored_instances(lab, scale):
     """The plane x + z = 0, scaled: its normal is the inverse transpose's, towards the viewer."""
     half = small_scenes.quad((-1, -1, 1), (2, 0, -2), (0, 2, 0))
@@ -77,7 +79,9 @@ def test_normals_of_scaled_and_mirrored_instances(lab, scale):
     normal = np.array([1, 0, 1]) / np.array(scale)
     normal /= np.linalg.norm(normal) * (np.sign(normal[2]) or 1)
     assert frame.mask.any()
-    np.testing.assert_allclose(frame["viewNormal"][frame.mask], np.broadcast_to(normal, (frame.mask.sum(), 3)), atol=2e-3)
+    np.testing.assert_allclose(
+        frame["viewNormal"][frame.mask], np.broadcast_to(normal, (frame.mask.sum(), 3)), atol=2e-3
+    )
 
 
 def test_both_sides_of_a_triangle_face_the_viewer(lab):
@@ -117,7 +121,7 @@ def test_normals_of_a_sphere_point_away_from_its_centre(lab):
 
 
 def checker() -> Texture:
-    """Red, green / blue, grey; sRGB. 8×8 texels each: what is looked at lies far from the borders, which are blended."""
+    """Red, green / blue, grey; sRGB. 8×8 texels each, for their borders are blended."""
     four = np.array([[(255, 0, 0, 255), (0, 255, 0, 255)], [(0, 0, 255, 255), (188, 188, 188, 255)]], np.uint8)
     return Texture(four.repeat(8, axis=0).repeat(8, axis=1), "checker")
 

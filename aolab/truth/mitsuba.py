@@ -109,7 +109,7 @@ def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, ti
     if not timeout > 0:
         raise ParameterError(f"timeout = {timeout!r} is not a number of seconds above 0")
     if importlib.util.find_spec("mitsuba") is None:
-        raise ParameterError("engine = 'mitsuba' needs Mitsuba 3: pip install mitsuba")
+        raise ParameterError("engine = 'mitsuba' needs Mitsuba 3: pip install mitsuba (the extra 'mitsuba')")
     return [name for name in BUFFERS if name in wanted]
 
 

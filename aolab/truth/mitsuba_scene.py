@@ -5,7 +5,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..camera import Camera
 from ..environment import Environment
 from ..errors import SceneError
 from ..lights import DirectionalLight, Light, PointLight, SpotLight
@@ -69,7 +68,7 @@ def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: 
 
 
 def _camera(view: View, bounds: np.ndarray, centre: np.ndarray, scale: float) -> dict[str, Any]:
-    camera: Camera = view.camera
+    camera = view.camera
     near, far = camera.clip_planes(bounds)
     return {
         "origin": ((np.asarray(camera.eye) - centre) * scale).tolist(),
@@ -82,12 +81,11 @@ def _camera(view: View, bounds: np.ndarray, centre: np.ndarray, scale: float) ->
 
 
 def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre: np.ndarray, scale: float) -> None:
-    """Vertices and normals in Mitsuba's world; the cofactor matrix, as in glsl/pipeline/gbuffer.vert."""
+    """Its triangles in Mitsuba's world: `centre` is 0, a scene unit is `scale`."""
     mesh = instance.mesh
     assert mesh.normals is not None  # Mesh makes them
     linear, translation = instance.world_from_local[:3, :3], instance.world_from_local[:3, 3]
-    cofactor = np.linalg.det(linear) * np.linalg.inv(linear).T
-    normals = mesh.normals.astype(np.float64) @ linear.T
+    normals = mesh.normals.astype(np.float64) @ np.linalg.inv(linear)  # surfaces have two sides: any sign will do
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     vertices = (mesh.vertices.astype(np.float64) @ linear.T + translation - centre) * scale
     arrays[f"{name}.vertices"] = vertices.astype(np.float32)

@@ -60,10 +60,11 @@ def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:
     mesh = mi.Mesh(name, len(vertices), len(faces), properties, True, uv is not None)
     parameters = mi.traverse(mesh)
     parameters["vertex_positions"] = vertices.ravel()
-    parameters["vertex_normals"] = normals.ravel()
     parameters["faces"] = faces.ravel()
     if uv is not None:
         parameters["vertex_texcoords"] = uv.ravel()
+    parameters.update()
+    parameters["vertex_normals"] = normals.ravel()  # by themselves: older Mitsubas make their own with new positions
     parameters.update()
     if colors is not None:
         mesh.add_attribute(VERTEX_COLOR, 3, colors.ravel().tolist())

@@ -84,7 +84,9 @@ print(np.array_equal(lab.render(scene).image, frame.image))  # the parent goes o
 
 def test_spawned_workers_render(tmp_path, python):
     (tmp_path / "work.py").write_text(
-        RENDER.replace("frame = ", "def draw(seed):\n    return ").replace("scene)\n", "scene, seed=seed).image.mean()\n")
+        RENDER.replace("frame = ", "def draw(seed):\n    return ").replace(
+            "scene)\n", "scene, seed=seed).image.mean()\n"
+        )
     )
     done = python(
         """

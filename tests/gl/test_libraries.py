@@ -94,7 +94,9 @@ def test_frames_are_orthonormal_right_handed_and_hold_the_normal(glsl, frame):
 
 
 def test_the_16_sets_turn_the_kernel_by_16_angles(glsl):
-    tangents = glsl("lib/sampling.glsl", "result.xyz = interleavedFrame(vec3(0, 0, 1), int(x.x))[0];", rows(np.arange(16)))
+    tangents = glsl(
+        "lib/sampling.glsl", "result.xyz = interleavedFrame(vec3(0, 0, 1), int(x.x))[0];", rows(np.arange(16))
+    )
     angle = np.degrees(np.arctan2(tangents[:, 1], tangents[:, 0])) % 360
     np.testing.assert_allclose(np.sort(angle), np.arange(16) * 22.5, atol=1e-3)
 

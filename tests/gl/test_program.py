@@ -24,7 +24,9 @@ def write(path, text: str) -> None:
 def test_an_error_names_file_and_line_through_nested_includes(gl, shaders):
     (shaders / "outer.glsl").write_text('// outer\n#include "inner.glsl"\n')
     (shaders / "inner.glsl").write_text("// inner\n\nfloat twice(float x) { return x * missing; }\n")
-    (shaders / "main.frag").write_text('#include "outer.glsl"\nout vec4 color;\nvoid main() { color = vec4(twice(1.0)); }\n')
+    (shaders / "main.frag").write_text(
+        '#include "outer.glsl"\nout vec4 color;\nvoid main() { color = vec4(twice(1.0)); }\n'
+    )
     with pytest.raises(ShaderError) as caught:
         Programs().get("main.frag")
     lines = str(caught.value).splitlines()
@@ -135,7 +137,9 @@ def test_a_bad_edit_raises_and_the_last_good_program_stays(edited):
     assert visibility(lab.render(scene, "none")) == 0.75
 
 
-@pytest.mark.parametrize("break_it", [lambda text: text.replace("1.0", "one"), lambda text: '#include "gone.glsl"\n' + text])
+@pytest.mark.parametrize(
+    "break_it", [lambda text: text.replace("1.0", "one"), lambda text: '#include "gone.glsl"\n' + text]
+)
 def test_a_bad_edit_raises_while_watching_too(edited, break_it):
     lab, scene, shader = edited
     lab.watch = True

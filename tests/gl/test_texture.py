@@ -35,7 +35,9 @@ def test_an_unknown_format_is_refused_with_the_nearest(gl):
 def test_sizes_beyond_the_drivers_limit_are_refused_and_name_it(lab, plane, gl):
     limit = gl.info["GL_MAX_TEXTURE_SIZE"]
     for size in ((limit + 1, 1), (1, limit + 1)):
-        with pytest.raises(ParameterError, match=rf"size = {size[0]}x{size[1]}: each side must be from 1 to {limit} pixels"):
+        with pytest.raises(
+            ParameterError, match=rf"size = {size[0]}x{size[1]}: each side must be from 1 to {limit} pixels"
+        ):
             lab.render(plane, size=size)
 
 

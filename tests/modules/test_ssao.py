@@ -52,8 +52,8 @@ def test_an_unoccluded_plane_stays_exactly_open_when_averaged(lab):
 def wall_visibility(distance: NDArray, radius: float, falloff: float) -> NDArray:
     """AO of a floor at `distance` from an endless wall, of which rays of length `radius` see only a part.
 
-    Cosine-distributed directions are uniform over the unit disc (Nusselt's analogue), and a ray of length ρ meets the wall
-    where its disc coordinate towards it is over c = distance / ρ: the blocked share is a circular segment,
+    Cosine-distributed directions are uniform over the unit disc (Nusselt's analogue), and a ray of length ρ meets the
+    wall where its disc coordinate towards it is over c = distance / ρ: the blocked share is a circular segment,
     (arccos c - c √(1 - c²)) / π. The reach ρ = radius √(1 - falloff ξ) is averaged over ξ in [0, 1].
     """
     reach = radius * np.sqrt(1 - falloff * (np.arange(400) + 0.5) / 400)
@@ -99,8 +99,8 @@ def test_twice_the_steps_come_twice_as_close_to_rays(lab, wall):
 def test_a_plane_under_a_sphere(lab):
     """occlusion = c r² / (c² + s²)^{3/2}, unlimited radius, on the floor between the camera and the sphere.
 
-    One layer suffices there: the camera looks from just behind those points, so that their rays that meet the sphere enter it
-    through the side that the camera sees; only nearer than s = 2 does what is hidden behind the sphere count as solid.
+    One layer suffices there: the camera looks from just behind those points, so that their rays that meet the sphere
+    enter it by the side that the camera sees; only nearer than s = 2 does what is hidden behind it count as solid.
     """
     camera = aolab.Camera((0, 1.0, 4.2), (0, 0.8, 0), fov=75)
     settings = {"radius": 6.0, "thickness": 1 / 6, "bias": 0.0, "falloff": 0.0, "filter": "none"}
@@ -146,7 +146,9 @@ def test_thickness_keeps_a_far_foreground_from_casting_a_halo(lab):
 def test_auto_radius_is_a_tenth_of_the_scenes(lab, boxes):
     frame = lab.render(boxes, "ssao")
     assert frame.info["parameters"]["radius"] == pytest.approx(0.1 * boxes.radius)
-    np.testing.assert_array_equal(frame["visibility"], lab.render(boxes, "ssao", radius=0.1 * boxes.radius)["visibility"])
+    np.testing.assert_array_equal(
+        frame["visibility"], lab.render(boxes, "ssao", radius=0.1 * boxes.radius)["visibility"]
+    )
 
 
 def test_nothing_off_the_screen_blocks(lab):

@@ -1,0 +1,184 @@
+"""What holds for every module; a new one needs no edit here."""
+
+import typing
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import small_scenes
+
+from aolab import Frame, Module, ParameterError, paths
+from aolab.gl.source import assemble
+from aolab.gl.texture import FORMATS
+from aolab.modules import MODULES
+from aolab.parameters import describe
+
+CHECKOUT = Path(__file__).parents[2]
+PARAMETERS = [(name, field) for name, module in MODULES.items() for field in module.model_fields]
+# what `none` gives is 1 everywhere: there is nothing to remove
+WITHOUT_EFFECT = {("none", "filter")}
+
+
+def alternatives(module: type[Module], field: str) -> list[Any]:
+    """Other values that the parameter may take: every other choice; for numbers, its bounds and multiples."""
+    info = module.model_fields[field]
+    choices = [value for kind in kinds(info.annotation) for value in typing.get_args(kind)]
+    if set(kinds(info.annotation)) == {bool}:
+        choices = [True, False]
+    bounds = [
+        bound for name in ("ge", "le") for one in info.metadata if (bound := getattr(one, name, None)) is not None
+    ]
+    numbers: list[Any] = [0.3, 1.7]
+    if isinstance(info.default, int | float):
+        numbers = [*bounds, info.default * 2, info.default // 2 if isinstance(info.default, int) else info.default / 2]
+    numeric = {int, float} & set(kinds(info.annotation))
+    allowed = []
+    for value in [*choices, *(numbers if numeric else [])]:
+        try:
+            if getattr(module(**{field: value}), field) != info.default:
+                allowed.append(value)
+        except ParameterError:
+            continue
+    return allowed
+
+
+def kinds(annotation: Any) -> list[Any]:
+    """The plain types and Literals in an annotation."""
+    if typing.get_origin(annotation) in (None, typing.Literal):
+        return [annotation]
+    return [
+        kind
+        for part in typing.get_args(annotation)
+        if isinstance(part, type) or typing.get_args(part)
+        for kind in kinds(part)
+    ]
+
+
+def differ(one: Frame, other: Frame) -> bool:
+    return one.buffers != other.buffers or any(
+        one[name].shape != other[name].shape
+        or not np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
+        for name in one.buffers
+    )
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_it_renders_and_its_visibility_is_a_share(lab, boxes, name):
+    frame = lab.render(boxes, name)
+    assert set(MODULES[name].outputs) <= set(frame.buffers)
+    visibility = frame["visibility"]
+    assert visibility.shape == (48, 64)
+    assert visibility.dtype == np.float32
+    np.testing.assert_array_equal(np.isnan(visibility), ~frame.mask)
+    assert np.nanmin(visibility) >= 0
+    assert np.nanmax(visibility) <= 1
+    assert frame["ambient"].min() >= 0
+    assert frame.image.std() > 5
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_it_renders_at_the_ends_of_its_ranges(lab, boxes, name):
+    module = MODULES[name]
+    for field in module.model_fields:
+        for value in alternatives(module, field):
+            if value in (256, 64):  # directions and steps: many taps
+                frame = lab.render(boxes, name, size=(8, 6), **{field: value})
+            else:
+                frame = lab.render(boxes, name, size=(32, 24), **{field: value})
+            assert np.isfinite(frame["visibility"][frame.mask]).all(), (field, value)
+            assert 0 <= np.nanmin(frame["visibility"]) <= np.nanmax(frame["visibility"]) <= 1, (field, value)
+
+
+@pytest.mark.parametrize(("name", "field"), PARAMETERS)
+def test_every_parameter_has_an_effect(lab, wall, name, field):
+    choices = alternatives(MODULES[name], field)
+    if not choices:  # one choice only, so far
+        assert len(typing.get_args(MODULES[name].model_fields[field].annotation)) == 1
+        return
+    # a corner with a foreground: something near, something far, something to filter, something thin
+    scene = small_scenes.of(
+        *(instance.mesh for instance in wall.instances),
+        small_scenes.box((1.0, 0.0, -0.4), (1.3, 0.8, 0.1)),
+        small_scenes.box((1.6, 1.0, 0.2), (1.9, 1.1, 0.9)),
+        camera=wall.camera,
+    )
+    radius = {"radius": 1.0} if "radius" in MODULES[name].model_fields and field != "radius" else {}
+    default = lab.render(scene, name, **radius)
+    effect = [differ(lab.render(scene, name, **radius, **{field: value}), default) for value in choices]
+    assert any(effect) is ((name, field) not in WITHOUT_EFFECT)
+
+
+@pytest.mark.parametrize(("name", "field"), PARAMETERS)
+def test_every_parameter_is_stated_whole(name, field):
+    module = MODULES[name]
+    about = describe(module, field)
+    assert about["description"].endswith("."), "a sentence"
+    assert about["type"]
+    assert about["default"]
+    schema = module.model_json_schema()["properties"][field]
+    assert schema["description"] == about["description"]
+    if {int, float} & set(kinds(module.model_fields[field].annotation)):
+        assert about["range"], "a number has a range"
+    getattr(module(), field)  # the default is validated: within its range
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_it_says_what_it_is(name):
+    module = MODULES[name]
+    assert module.name == name
+    assert module.name.isidentifier()
+    assert module.name.islower()
+    assert module.title
+    assert any(character.isdigit() for character in module.paper), "a citation has a year"
+    assert module.__doc__
+    assert len(module.__doc__) > 60
+    assert module.__doc__ != Module.__doc__
+    assert set(module.outputs.values()) <= set(FORMATS)
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_its_shaders_say_what_they_do(name):
+    for step in MODULES[name]().passes():
+        text = (paths.glsl() / step.shader).read_text()
+        head = text[: text.index("\n\n")]
+        assert head.startswith("// ")
+        assert "Output" in text[: text.index("void main")]
+        assert all(line.startswith("//") for line in head.splitlines())
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_its_parameters_arrive_in_its_shaders_under_their_names(name):
+    """Each of a module's own parameters is a uniform or constant of a shader, or shapes what `samples` gives."""
+    module = MODULES[name]()
+    values = {key: value for key, value in module.model_dump().items() if isinstance(value, bool | int | float)}
+    aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
+    text = "".join(assemble(step.shader, {**values, **step.constants}, aliases).text for step in module.passes())
+    own = set(type(module).model_fields) - set(Module.model_fields)
+    missing = {field for field in own if field not in text}
+    for field in missing:
+        value = alternatives(MODULES[name], field)[0]
+        assert module.replace(**{field: value}).samples(0) != module.samples(0), field
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_it_has_its_page(name):
+    page = CHECKOUT / "docs" / "modules" / f"{name}.md"
+    assert page.is_file()
+    assert len(page.read_text()) > 300
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_unknown_parameters_are_refused(name):
+    with pytest.raises(ParameterError, match=rf"{name} has no parameter 'filtre'; did you mean 'filter'\?"):
+        MODULES[name](filtre="none")  # pyright: ignore[reportCallIssue]
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_a_module_cannot_be_changed_in_place(name):
+    module = MODULES[name]()
+    with pytest.raises((TypeError, ValueError), match="frozen"):
+        module.filter = "none"  # pyright: ignore[reportAttributeAccessIssue]
+    changed = module.replace(filter="bilateral")
+    assert changed.filter == "bilateral"
+    assert module.filter == "box4"

@@ -1,0 +1,178 @@
+"""A module of one's own, as written in a notebook cell, is used like a built-in one."""
+
+from typing import Literal
+
+import numpy as np
+import pytest
+import small_scenes
+
+import aolab
+from aolab import Module, ParameterError, Pass, parameter
+from aolab.modules.base import Directions, Radius
+
+
+class HeightFog(Module):
+    """Openness that grows with height: a uniform, a constant, a choice and an include."""
+
+    title = "Height fog"
+    height: float = parameter(2.0, "Height at which all is clear.", gt=0, unit="scene units")
+    bands: int = parameter(0, "Steps of brightness; 0 is smooth.", ge=0, le=8)
+    inverted: bool = parameter(False, "Fog above instead of below.")
+    shader = """
+#include "lib/space.glsl"
+const int bands;
+const bool inverted;
+uniform float height;
+uniform sampler2D viewZ;
+uniform mat4 world_from_view;
+uniform vec4 ray_from_pixel;
+out float visibility;
+
+void main() {
+    float surfaceZ = texelFetch(viewZ, ivec2(gl_FragCoord.xy), 0).r;
+    visibility = 1.0;
+    if (isBackground(surfaceZ)) return;
+    vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
+    visibility = clamp(worldPos.y / height, 0.0, 1.0);
+    if (bands > 0) visibility = floor(visibility * float(bands)) / float(bands);
+    if (inverted) visibility = 1.0 - visibility;
+}
+"""
+
+
+def test_it_computes_what_it_says(lab, boxes):
+    frame = lab.render(boxes, HeightFog(height=2.0, filter="none"))
+    y = small_scenes.world_positions(frame, boxes.camera)[..., 1][frame.mask]
+    np.testing.assert_allclose(frame["visibility"][frame.mask], np.clip(y / 2, 0, 1), atol=2e-3)
+
+
+def test_its_parameters_are_uniforms_and_constants(lab, boxes):
+    plain = lab.render(boxes, HeightFog(filter="none"))["visibility"]
+    higher = lab.render(boxes, HeightFog(filter="none", height=4.0))["visibility"]
+    np.testing.assert_allclose(higher, np.where(plain < 1, plain / 2, higher), atol=2e-3)
+    banded = lab.render(boxes, HeightFog, filter="none", bands=2)["visibility"]
+    assert set(np.unique(banded[np.isfinite(banded)])) <= {0.0, 0.5, 1.0}
+    inverted = lab.render(boxes, HeightFog, filter="none", inverted=True)["visibility"]
+    np.testing.assert_allclose(inverted, 1 - plain, atol=2e-3)
+
+
+@pytest.mark.parametrize("settings", [{"filter": "bilateral"}, {"scale": 0.5}, {"accumulate": 3}])
+def test_filter_scale_and_accumulation_are_there(lab, boxes, settings):
+    plain = lab.render(boxes, HeightFog(filter="none"))
+    frame = lab.render(boxes, HeightFog, **settings)
+    error = (frame["visibility"] - plain["visibility"])[plain.mask]
+    assert np.sqrt((error**2).mean()) < 0.06
+
+
+def test_its_parameters_are_checked_and_described(lab, boxes):
+    with pytest.raises(ParameterError, match=r"HeightFog: height = -1 is not valid: float, > 0, in scene units"):
+        HeightFog(height=-1)
+    with pytest.raises(ParameterError, match=r"HeightFog has no parameter 'heigth'; did you mean 'height'\?"):
+        lab.render(boxes, HeightFog, heigth=1)
+    assert HeightFog.model_json_schema()["properties"]["bands"]["description"] == "Steps of brightness; 0 is smooth."
+    assert lab.render(boxes, HeightFog).info["module"] == "HeightFog"
+    assert "HeightFog" in lab.render(boxes, HeightFog).timings
+
+
+def test_it_may_share_the_parts_of_the_built_in_ones(lab, wall):
+    """Sampling and occluders by include: this is SSAO with one step, written anew."""
+
+    class MySSAO(Module):
+        radius: Radius = "auto"
+        directions: Directions = 16
+        shader = """
+#include "lib/space.glsl"
+#include "lib/sampling.glsl"
+#include "occluders.glsl"
+const int directions;
+uniform float radius;
+uniform vec4 kernel[directions];
+uniform sampler2D viewNormal;
+uniform vec4 ray_from_pixel;
+out float visibility;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    visibility = 1.0;
+    if (isBackground(centreZ)) return;
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
+    viewPos += normal * liftOff(0.01 * radius, radius, viewPos, ray_from_pixel);
+    int set = interleavedSet(pixel);
+    mat3 frame = interleavedFrame(normal, set) * radius;
+    float blocked = 0.0;
+    for (int i = 0; i < directions; ++i) {
+        vec3 occluderPos;
+        vec3 samplePos = viewPos + frame * kernel[i].xyz * interleavedOffset(kernel[i].w, set);
+        blocked += float(isBlocked(samplePos, 0.8 * radius, occluderPos));
+    }
+    visibility = 1.0 - blocked / float(directions);
+}
+"""
+
+        def samples(self, seed: int) -> dict[str, bytes]:
+            return aolab.SSAO(directions=self.directions).samples(seed)
+
+    mine = lab.render(wall, MySSAO(radius=1.0))
+    built_in = lab.render(wall, aolab.SSAO(radius=1.0, steps=1))
+    np.testing.assert_allclose(mine["visibility"], built_in["visibility"], atol=1e-3)
+    assert np.nanmin(mine["visibility"]) < 0.9
+
+
+def test_several_passes_and_buffers_of_its_own(lab, boxes):
+    """The second pass reads what the first one gave; only what is named in `outputs` is filtered and kept."""
+
+    class Two(Module):
+        outputs = {"visibility": "R16F", "slope": "RGBA16F"}  # noqa: RUF012
+        kind: Literal["half", "whole"] = parameter("half", "How much.")
+
+        def passes(self) -> list[Pass]:
+            first = """
+uniform sampler2D viewNormal;
+out vec4 scratch;
+void main() { scratch = texelFetch(viewNormal, ivec2(gl_FragCoord.xy), 0) * 0.5; }
+"""
+            second = """
+const float share;
+uniform sampler2D scratch;
+layout(location = 0) out float visibility;
+layout(location = 1) out vec4 slope;
+void main() {
+    slope = texelFetch(scratch, ivec2(gl_FragCoord.xy), 0);
+    visibility = share;
+}
+"""
+            share = {"share": 0.5 if self.kind == "half" else 1.0}
+            return [Pass("first", first, {"scratch": "RGBA16F"}), Pass("second", second, self.outputs, share)]
+
+    frame = lab.render(boxes, Two(filter="none"))
+    np.testing.assert_allclose(frame["slope"][frame.mask][:, :3], 0.5 * frame["viewNormal"][frame.mask], atol=1e-3)
+    assert (frame["visibility"][frame.mask] == 0.5).all()
+    assert (lab.render(boxes, Two(kind="whole"))["visibility"][frame.mask] == 1).all()
+    assert "scratch" not in frame.buffers
+    assert {"first", "second"} <= set(frame.timings)
+
+
+def test_a_module_may_give_its_own_ambient_and_indirect_light(lab, boxes):
+    class Glow(Module):
+        outputs = {"visibility": "R16F", "ambient": "RGBA16F", "indirect": "RGBA16F"}  # noqa: RUF012
+        shader = """
+layout(location = 0) out float visibility;
+layout(location = 1) out vec4 ambient;
+layout(location = 2) out vec4 indirect;
+void main() { visibility = 1.0; ambient = vec4(0.25, 0.0, 0.0, 1.0); indirect = vec4(0.0, 0.5, 0.0, 1.0); }
+"""
+
+    frame = lab.render(boxes, Glow())
+    np.testing.assert_allclose(
+        frame["radiance"][frame.mask], np.broadcast_to([0.25, 0.5, 0], (frame.mask.sum(), 3)), atol=1e-3
+    )
+
+
+def test_a_shader_file_of_ones_own_is_found_in_the_glsl_folder(shaders, boxes):
+    (shaders / "mine.frag").write_text("// mine\nout float visibility;\nvoid main() { visibility = 0.5; }\n")
+
+    class Mine(Module):
+        shader = "mine.frag"
+
+    assert np.nanmax(aolab.Lab((8, 8)).render(boxes, Mine())["visibility"]) == 0.5

@@ -1,0 +1,86 @@
+"""The camera: a rigid view, a projection that holds the scene, and what it refuses."""
+
+import numpy as np
+import pytest
+
+from aolab import Camera, SceneError
+
+UNIT = np.array([[-1.0, -1.0, -1.0], [1.0, 1.0, 1.0]])
+
+
+def project(camera: Camera, point, size=(200, 100), bounds=UNIT) -> np.ndarray:
+    clip = camera.clip_from_view(size, bounds) @ camera.view_from_world @ (*point, 1)
+    return clip[:3] / clip[3]
+
+
+@pytest.mark.parametrize("eye", [(0, 0, 5), (3, 4, -5), (1e-3, 0, 0), (1e4, 2e4, 3e4)])
+def test_the_view_is_rigid_and_looks_down_minus_z(eye):
+    camera = Camera(eye, (0, 0, 0), up=(0.1, 1, 0))
+    matrix = camera.view_from_world
+    np.testing.assert_allclose(matrix[:3, :3] @ matrix[:3, :3].T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1)
+    distance = float(np.linalg.norm(eye))
+    np.testing.assert_allclose(matrix @ (0, 0, 0, 1), np.array([0, 0, -distance, 1]), atol=1e-9 * distance)
+    assert (matrix[:3, :3] @ (0.1, 1, 0))[1] > 0  # up stays up
+    assert (matrix[:3, :3] @ (0.1, 1, 0))[0] == pytest.approx(0, abs=1e-12)
+
+
+def test_the_field_of_view_is_vertical():
+    camera = Camera((0, 0, 2), (0, 0, 0), fov=90)
+    np.testing.assert_allclose(project(camera, (0, 2, 0))[:2], (0, 1), atol=1e-12)
+    np.testing.assert_allclose(project(camera, (4, 0, 0))[:2], (1, 0), atol=1e-12)  # 2:1
+    np.testing.assert_allclose(project(camera, (0, 2, 0), size=(10, 100))[:2], (0, 1), atol=1e-12)
+
+
+@pytest.mark.parametrize("eye", [(0, 0, 5), (0.5, 0.5, 0.5), (0, 0, 100), (0, 0, 1.0001)])
+def test_all_of_the_scene_that_is_before_the_eye_is_between_the_clip_planes(eye):
+    camera = Camera(eye, (0, 0, 0))
+    near, far = camera.clip_planes(UNIT)
+    assert 0 < near < far
+    forward = -np.asarray(eye) / np.linalg.norm(eye)
+    corners = np.array(np.meshgrid(*UNIT.T)).reshape(3, -1).T
+    along = (corners - eye) @ forward
+    assert along.max() < far
+    assert near < along[along > 0].min() or near == pytest.approx(far * 1e-3)
+
+
+def test_a_scene_behind_the_eye_is_simply_not_seen():
+    near, far = Camera((0, 0, 5), (0, 0, 10)).clip_planes(UNIT)
+    assert 0 < near < far
+
+
+def test_given_clip_planes_are_kept():
+    assert Camera((0, 0, 5), (0, 0, 0), near=0.5, far=7).clip_planes(UNIT) == (0.5, 7)
+
+
+@pytest.mark.parametrize("fov", [5, 40, 120])
+def test_framing_shows_everything(fov):
+    bounds = np.array([[-3.0, 0.0, 1.0], [5.0, 0.5, 2.0]])
+    camera = Camera.framing(bounds, fov=fov)
+    corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
+    for corner in corners:
+        assert np.abs(project(camera, corner, (100, 100), bounds)).max() <= 1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"eye": (0, 0)}, r"eye = \(0, 0\) is not three finite numbers"),
+        ({"eye": (0, np.nan, 0)}, r"eye = \(0, nan, 0\) is not three finite numbers"),
+        ({"target": (0, 0, np.inf)}, r"target = .* is not three finite numbers"),
+        ({"eye": (1, 2, 3), "target": (1, 2, 3)}, r"eye and target are both \(1\.0, 2\.0, 3\.0\); it looks nowhere"),
+        ({"eye": (0, 5, 0)}, r"up = \(0\.0, 1\.0, 0\.0\) is parallel to the view direction; choose another up"),
+        ({"up": (0, 0, 0)}, r"up = "),
+        ({"fov": 0}, r"fov = 0 is outside \(0, 180\) degrees"),
+        ({"fov": 180}, r"fov = 180 is outside"),
+        ({"fov": float("nan")}, r"fov = nan is outside"),
+        ({"near": 0}, r"near = 0 must be finite and above 0"),
+        ({"near": 2, "far": 1}, r"far = 1 must be finite and above near = 2"),
+        ({"near": float("nan")}, r"near = nan"),
+        ({"far": -1}, r"far = -1 must be finite and above near = 0"),
+        ({"near": 1, "far": float("inf")}, r"far = inf"),
+    ],
+)
+def test_cameras_that_see_nothing_are_refused(arguments, message):
+    with pytest.raises(SceneError, match=f"camera: {message}"):
+        Camera(**{"eye": (0, 0, 5), "target": (0, 0, 0), **arguments})

@@ -1,0 +1,68 @@
+"""Scenes: where things are, what is filled in, and what is refused."""
+
+import numpy as np
+import pytest
+import small_scenes
+
+from aolab import DirectionalLight, Environment, Instance, Scene, SceneError
+
+BOX = small_scenes.box((0, 0, 0), (1, 2, 3))
+
+
+def moved(x: float = 0, y: float = 0, z: float = 0, scale: float = 1) -> np.ndarray:
+    matrix = np.diag([scale, scale, scale, 1.0])
+    matrix[:3, 3] = x, y, z
+    return matrix
+
+
+def test_bounds_and_triangles_are_those_of_all_instances():
+    scene = Scene((Instance(BOX), Instance(BOX, moved(x=10, scale=2))))
+    np.testing.assert_allclose(scene.bounds, [[0, 0, 0], [12, 4, 6]])
+    assert scene.triangles == 24
+    assert scene.radius == pytest.approx(np.sqrt(12**2 + 4**2 + 6**2) / 2)
+    triangles = scene.world_triangles()
+    assert triangles.shape == (24, 3, 3)
+    np.testing.assert_allclose(triangles[12:].reshape(-1, 3), triangles[:12].reshape(-1, 3) * 2 + (10, 0, 0), atol=1e-5)
+
+
+def test_what_is_missing_is_filled_in():
+    bare = Scene((Instance(BOX),))
+    assert bare.camera is not None
+    assert bare.environment is not None
+    assert len(bare.lights) == 1
+    lamp = Scene((Instance(BOX),), (DirectionalLight((0, -1, 0)),))
+    assert lamp.lights == (DirectionalLight((0, -1, 0)),)
+    assert lamp.environment is not None
+    assert not lamp.environment.radiance.any()
+    assert Scene((Instance(BOX),), environment=Environment.constant(1)).lights == ()
+
+
+def test_replace_keeps_the_meshes():
+    scene = small_scenes.boxes()
+    other = scene.replace(lights=(DirectionalLight((0, -1, 0)),))
+    assert other.instances is scene.instances
+    assert scene.lights == ()
+
+
+@pytest.mark.parametrize(
+    ("matrix", "message"),
+    [
+        (np.diag([1.0, 0, 1, 1]), r"instance 'box': its transform is singular \(scales .*0\.0"),
+        (np.zeros((4, 4)), r"instance 'box': its transform"),
+        (np.full((4, 4), np.nan), r"instance 'box': its transform is not a finite 4×4 matrix"),
+        (np.eye(3), r"instance 'box': its transform is not a finite 4×4 matrix"),
+        (np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]]), r"last row is .*, not affine"),
+        (np.diag([1e200, 1e200, 1e200, 1.0]), r"reaches .*; the limit is"),
+        (moved(x=1e16), r"reaches 1e\+16 units from the origin; the limit is 1e\+15"),
+        (moved(scale=1e-14), r"scene 'scene' has radius .*: too small for float32"),
+        (moved(x=1e9), r"too small for float32; scale it or move it to the origin"),
+    ],
+)
+def test_placements_that_cannot_be_drawn_are_refused(matrix, message):
+    with pytest.raises(SceneError, match=message):
+        Scene((Instance(BOX, matrix),))
+
+
+def test_an_empty_scene_is_refused_by_name():
+    with pytest.raises(SceneError, match="scene 'nothing' is empty: it holds no mesh"):
+        Scene((), name="nothing")
