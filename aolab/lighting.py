@@ -10,8 +10,11 @@ import numpy as np
 from .draw import Buffers, Painter
 from .environment import HALF_MAX, Environment
 from .gl import context
+from .gl.texture import make
 from .lights import DirectionalLight, PointLight, SpotLight
+from .modules import Module
 from .passes import Pass
+from .prefiltered import prefiltered
 from .scene import Scene
 from .shadows import ShadowMaps
 from .view import View, matrix_bytes
@@ -20,6 +23,7 @@ ToneMap = Literal["filmic", "linear"]
 
 _DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"})
 _AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
+_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
@@ -30,6 +34,9 @@ class EnvironmentMaps:
 
     def __init__(self) -> None:
         self._textures: weakref.WeakKeyDictionary[Environment, moderngl.Texture] = weakref.WeakKeyDictionary()
+        self._prefiltered: weakref.WeakKeyDictionary[Environment, tuple[float, moderngl.Texture]] = (
+            weakref.WeakKeyDictionary()
+        )
 
     def of(self, environment: Environment) -> moderngl.Texture:
         """RGB, half float, first row up (+y): as glsl/lib/environment.glsl reads it."""
@@ -42,6 +49,15 @@ class EnvironmentMaps:
             self._textures[environment] = texture
         return self._textures[environment]
 
+    def prefiltered(self, environment: Environment, solid_angle: float) -> moderngl.Texture:
+        """An octahedral map, RGBA float, blurred to `solid_angle` steradians; the last blur asked for is kept."""
+        kept = self._prefiltered.get(environment)
+        if kept is None or kept[0] != solid_angle:
+            pixels = prefiltered(environment, solid_angle)
+            padded = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
+            kept = self._prefiltered[environment] = solid_angle, make(pixels.shape[1::-1], "RGBA32F", padded.tobytes())
+        return kept[1]
+
 
 @dataclass(frozen=True)
 class Display:
@@ -51,18 +67,41 @@ class Display:
     tone_map: ToneMap = "filmic"
 
 
-def light(painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps) -> Buffers:
-    """`direct` and `ambient` radiance; a module that gives its own `ambient` is left alone."""
+def light(painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps, module: Module) -> Buffers:
+    """`direct` and `ambient` radiance; a module that gives `irradiance` has it reflected, in place of the SH's."""
     inputs = {**buffers, "shadow_atlas": shadows.atlas}
     count = len(scene.lights)
-    constants = {"lights": count, "light_slots": max(1, count), "shadow_slots": len(shadows.matrices)}
-    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows)}
-    lit = painter.run(_DIRECT, inputs, uniforms, view.size, constants)
-    if "ambient" not in buffers:
+    values = module.model_dump()
+    light_steps = values.setdefault("light_steps", 0)
+    # what only samples towards the lights read
+    values = {"radius": 0.0, "bias": 0.0, "thickness": 0.0, **values}
+    constants = {
+        "lights": count,
+        "light_slots": max(1, count),
+        "shadow_slots": len(shadows.matrices),
+        "light_steps": light_steps,
+    }
+    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values}
+    aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
+    lit = painter.run(_DIRECT, inputs, uniforms, view.size, constants, aliases)
+    if "irradiance" in buffers:
+        lit |= reflect(painter, buffers, "irradiance", "ambient", view)
+    else:
         assert scene.environment is not None  # Scene fills it in
         coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
         lit |= painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
     return lit
+
+
+def reflect(painter: Painter, buffers: Buffers, irradiance: str, radiance: str, view: View) -> Buffers:
+    """The buffer `irradiance`, reflected diffusely, as `radiance`."""
+    step = Pass(radiance, "pipeline/reflect.frag", {radiance: "RGBA16F"})
+    return painter.run(step, {**buffers, "source": buffers[irradiance]}, view.uniforms, view.size)
+
+
+def sender(painter: Painter, buffers: Buffers, view: View) -> Buffers:
+    """`sender`: what leaves each surface before any bounce, direct + ambient."""
+    return painter.run(_SENDER, buffers, view.uniforms, view.size)
 
 
 def compose(

@@ -1,0 +1,65 @@
+// SSDO, one bounce: every occluder is a small patch that reflects the direct light stored for its pixel.
+// Ritschel, Grosch and Seidel 2009, section 3:
+//   L_ind(P) = Σ ρ/π L_pixel (1 - V(ω_i)) A_s cosθ_s cosθ_r / d_i²,  A_s = π r_max² / N
+// d is clamped from below; the paper clamps to 1, we to `distance_clamp` in scene units. ρ/π waits for the lighting.
+// Back-facing senders, and those below the receiver's horizon, give nothing.
+//
+// Inputs:  viewZ, viewNormal; sender, the direct and ambient light that leaves each pixel (RGB radiance).
+// Output:  bounce: rgb the irradiance from the senders.
+
+#include "lib/space.glsl"
+#include "lib/sampling.glsl"
+#include "occluders.glsl"
+
+const int directions;
+const int steps;
+
+uniform float radius;          // scene units
+uniform float bias;            // radii
+uniform float thickness;       // radii
+uniform float bleeding;        // scales A_s
+uniform float distance_clamp;  // scene units
+uniform vec4 kernel[directions];
+uniform sampler2D viewNormal;
+uniform sampler2D sender;
+uniform vec4 ray_from_pixel;
+
+out vec4 bounce;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    bounce = vec4(0.0);
+    if (isBackground(centreZ)) return;
+
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
+    viewPos += normal * liftOff(bias * radius, radius, viewPos, ray_from_pixel);
+    int set = interleavedSet(pixel);
+    mat3 frame = interleavedFrame(normal, set) * radius;
+
+    vec3 sum = vec3(0.0);
+    for (int i = 0; i < directions; ++i) {
+        vec3 way = frame * kernel[i].xyz;
+        float offset = interleavedOffset(kernel[i].w, set);
+        bool blocked = false;
+        vec3 senderPos = viewPos;
+        for (int j = 0; j < steps; ++j) {
+            vec3 occluderPos;
+            vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
+            bool hit = isBlocked(samplePos, thickness * radius, occluderPos);
+            if (hit && !blocked) senderPos = occluderPos;  // the first one along the way hides the others
+            blocked = blocked || hit;
+        }
+        if (!blocked) continue;
+        vec2 uv = pixelAt(senderPos, pixel_from_ray) * texel_size;
+        vec3 toSender = senderPos - viewPos;
+        float squaredDistance = max(dot(toSender, toSender), distance_clamp * distance_clamp);
+        vec3 towards = toSender * inversesqrt(max(dot(toSender, toSender), 1e-20));
+        float cosReceiver = max(dot(normal, towards), 0.0);
+        float cosSender = max(dot(texture(viewNormal, uv).xyz, -towards), 0.0);
+        sum += texture(sender, uv).rgb * (cosReceiver * cosSender / squaredDistance);
+    }
+    float patchArea = bleeding * PI * radius * radius / float(directions);
+    bounce = vec4(patchArea * sum, 1.0);
+}
