@@ -186,12 +186,26 @@ def bench(
     start: Annotated[
         bool, typer.Option("--start", help="Import, and process start to saved picture at 640x360.")
     ] = False,
+    quality: Annotated[
+        str | None,
+        typer.Option(metavar="SCENE", help="Error against milliseconds, every module over a range of its settings."),
+    ] = None,
+    rays: options.Rays = 256,
+    output: Annotated[
+        Path, typer.Option("-o", "--output", metavar="FILE.png", help="For --quality: the picture; data beside it.")
+    ] = Path("quality.png"),
     as_json: Json = False,
 ) -> None:
     """Measure: per pass, median and spread over repeated frames; the whole frame; Python's share; the bare loop."""
     from . import bench as measure
     from .command import parse_size
 
+    if quality is not None:
+        from .quality import quality_command
+
+        curve = quality_command(quality, output, size=parse_size(size), rays=rays, frames=frames)
+        print(json.dumps(curve.to_dict(), indent=2) if as_json else f"{curve.table()}\n{output}")
+        return
     if scaling:
         result = measure.scaling(parse_size(size), frames)
     elif start:
@@ -199,6 +213,49 @@ def bench(
     else:
         result = measure.frames(scene, parse_size(size), frames)
     print(json.dumps(result, indent=2) if as_json else measure.table(result))
+
+
+@app.command()
+def tune(
+    module: Annotated[str, typer.Argument(help="The method; see `aolab modules`.")],
+    parameters: Annotated[
+        str | None, typer.Option(metavar="A,B", help="What to fit. Default: all numbers of the module's own.")
+    ] = None,
+    set_: options.Set = None,
+    scenes: Annotated[str | None, typer.Option(metavar="A,B", help="What to fit to.")] = None,
+    test_scenes: Annotated[str | None, typer.Option(metavar="A,B", help="Other scenes, which only judge.")] = None,
+    views: Annotated[int, typer.Option(help="Cameras a scene: its own, and others from the side.")] = 3,
+    trials: Annotated[int | None, typer.Option(help="Default: 25 a parameter.", show_default=False)] = None,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "320x180",
+    rays: options.Rays = 128,
+    seed: Annotated[int, typer.Option(help="Of the search.")] = 0,
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.json", help="Write the preset: the parameters.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Fit a module's parameters to the truth on some scenes, and report what that does on others."""
+    from .command import parse_size
+    from .tune import tune_command
+
+    result = tune_command(
+        module,
+        dict(_key_value(text) for text in set_ or []),
+        output,
+        parameters=_words(parameters),
+        scenes=_words(scenes),
+        test_scenes=_words(test_scenes),
+        views=views,
+        trials=trials,
+        size=parse_size(size),
+        rays=rays,
+        seed=seed,
+    )
+    print(json.dumps(result.to_dict(), indent=2) if as_json else result.table())
+
+
+def _words(text: str | None) -> list[str] | None:
+    return None if text is None else [word.strip() for word in text.split(",") if word.strip()]
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from .frame import Frame, lend
 from .gl import context
 from .gl.geometry import Geometry
 from .gl.program import Programs
-from .gl.texture import Pool, Size, check_size
+from .gl.texture import Pool, Size, check_size, refuse_exhaustion
 from .lighting import Display, EnvironmentMaps, ToneMap
 from .modules import MODULES, Module, find
 from .scene import Scene
@@ -123,6 +123,7 @@ class Lab:
             buffers |= estimate(run, bounce, buffers)
             buffers |= lighting.reflect(painter, buffers, "bounce", "indirect", view)
         buffers |= lighting.compose(painter, buffers, self._environments, scene, view, display)
+        refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
 
         info = {
             "aolab": __version__,

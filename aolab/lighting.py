@@ -10,7 +10,7 @@ import numpy as np
 from .draw import Buffers, Painter
 from .environment import HALF_MAX, Environment
 from .gl import context
-from .gl.texture import make
+from .gl.texture import make, refuse_exhaustion
 from .lights import DirectionalLight, PointLight, SpotLight
 from .modules import Module
 from .passes import Pass
@@ -44,6 +44,7 @@ class EnvironmentMaps:
             height, width = environment.radiance.shape[:2]
             data = np.ascontiguousarray(np.minimum(environment.radiance, HALF_MAX), np.float16).tobytes()
             texture = context.get().texture((width, height), 3, data, dtype="f2", alignment=2)
+            refuse_exhaustion(f"environment '{environment.name}' of {width}x{height}")
             texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
             texture.repeat_x, texture.repeat_y = True, False
             self._textures[environment] = texture

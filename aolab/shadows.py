@@ -10,6 +10,7 @@ from .draw import Painter
 from .errors import SceneError
 from .gl import context
 from .gl.geometry import Geometry
+from .gl.texture import refuse_exhaustion
 from .lights import DirectionalLight, Light, PointLight, SpotLight
 from .scene import Scene
 from .view import matrix_bytes
@@ -95,6 +96,7 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
     tile = (FINE if len(matrices) <= 4 else COARSE) if matrices else 1
     width = side * tile
     atlas = gl.depth_texture((width, width))
+    refuse_exhaustion(f"shadow maps of {width}x{width}")
     atlas.compare_func = "<="
     atlas.filter = (moderngl.LINEAR, moderngl.LINEAR)
     atlas.repeat_x = atlas.repeat_y = False

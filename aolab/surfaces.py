@@ -6,6 +6,7 @@ import numpy as np
 from .draw import Buffers, Painter
 from .gl import context
 from .gl.geometry import Geometry
+from .gl.texture import refuse_exhaustion
 from .passes import Pass
 from .scene import Scene
 from .view import View, ray_scale_offset
@@ -24,7 +25,9 @@ class DepthTargets:
 
     def of(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
         if self._depth is None or self._depth[0] != size:
-            self._depth = size, context.get().depth_renderbuffer(size)
+            depth = context.get().depth_renderbuffer(size)
+            refuse_exhaustion(f"a depth buffer of {size[0]}x{size[1]}")
+            self._depth = size, depth
         return self._depth[1]
 
 

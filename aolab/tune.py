@@ -4,13 +4,16 @@ The way XeGTAO (Intel 2021) found its constants. Every module gets the same chan
 same search, as many trials a parameter.
 """
 
+import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from statistics import fmean
 from typing import Any
 
 from . import orbit
 from .camera import Camera
+from .command import typed
 from .errors import Error, ParameterError
 from .frame import Frame
 from .gl import context
@@ -18,6 +21,7 @@ from .gl.texture import Size
 from .lab import Lab
 from .loading import load
 from .modules import MODULES, Module, find
+from .output import check_writable, replacing
 from .parameters import label
 from .quality import visibility_error
 from .scene import Scene
@@ -96,6 +100,7 @@ class Tuning:
                     lines.append(_line(where, row.rmse, row.tuned_rmse, row.bias, row.tuned_bias))
             names = ("rmse", "tuned_rmse", "bias", "tuned_bias")
             lines.append(_line(f"{head}, mean", *(self.mean(name, held_out=held_out) for name in names)))
+        lines.append("--set " + " --set ".join(f"{key}={value}" for key, value in self.preset.items()))
         if self.mean("tuned_rmse", held_out=True) > self.mean("rmse", held_out=True):
             lines.append("On the held-out scenes this preset is worse than what it replaces: do not use it in general.")
         return "\n".join(lines)
@@ -120,8 +125,8 @@ def tune(
     module: str | Module | type[Module],
     parameters: Sequence[str] | None = None,
     *,
-    scenes: Sequence[Any] = TRAINING,
-    test_scenes: Sequence[Any] = HELD_OUT,
+    scenes: Sequence[Any] | None = None,
+    test_scenes: Sequence[Any] | None = None,
     trials: int | None = None,
     views: int = 3,
     size: Size = (320, 180),
@@ -132,9 +137,10 @@ def tune(
     """Fit `parameters` (all of the module's own numbers by default) to the least mean RMSE of visibility.
 
     The mean is over all `scenes`, each from its own camera and others (`orbit.cameras`), `views` in all; `test_scenes`
-    only judge. Radius and falloff are the truth's, too, and stay; so does what costs time (`search_space`). The first
-    trial is the module as given, so that the result is never worse where it was fitted; the others are the choice of a
-    tree-structured Parzen estimator (Bergstra et al. 2011), seeded. `trials`: 25 a parameter by default.
+    only judge; by default they are `TRAINING` and `HELD_OUT`. Radius and falloff are the truth's, too, and stay; so
+    does what costs time (`search_space`). The first trial is the module as given, so that the result is never worse
+    where it was fitted; the others are the choice of a tree-structured Parzen estimator (Bergstra et al. 2011), seeded.
+    `trials`: 25 a parameter by default.
     Raises `ParameterError`, `Error` without Optuna, and what `aolab.render` and `aolab.reference` raise.
     """
     module = find(module, MODULES)
@@ -148,7 +154,8 @@ def tune(
     if "visibility" not in module.outputs:
         raise ParameterError(f"{label(type(module))} gives no visibility; it gives {', '.join(module.outputs)}")
     optuna = _optuna()
-    training, held_out = [load(one) for one in scenes], [load(one) for one in test_scenes]
+    training = [load(one) for one in (TRAINING if scenes is None else scenes)]
+    held_out = [load(one) for one in (HELD_OUT if test_scenes is None else test_scenes)]
     _check(training, held_out)
 
     lab = Lab(size)
@@ -174,6 +181,17 @@ def tune(
     return Tuning(module, tuned, tuple(names), tuple(rows), info)
 
 
+def tune_command(module: str, values: dict[str, Any], output: Path | None, **how: Any) -> Tuning:
+    """Tune the module with these values, which may be text, and write the preset as JSON."""
+    if output is not None:
+        check_writable(output)
+    tuning = tune(typed(module, values), **how)
+    if output is not None:
+        with replacing(output) as file:
+            file.write((json.dumps(tuning.preset, indent=2) + "\n").encode())
+    return tuning
+
+
 def _optuna() -> Any:
     try:
         import optuna
@@ -186,8 +204,8 @@ def _check(training: list[Scene], held_out: list[Scene]) -> None:
     for what, group in (("scenes", training), ("test_scenes", held_out)):
         if not group:
             raise ParameterError(f"{what} is empty: name at least one scene")
-    names = {_name(scene) for scene in training}
-    if both := sorted(names & {_name(scene) for scene in held_out}):
+    known = {scene.source or id(scene) for scene in training}
+    if both := [_name(scene) for scene in held_out if (scene.source or id(scene)) in known]:
         raise ParameterError(f"{', '.join(both)}: to be fitted to and to judge; a scene can be one of both only")
 
 

@@ -12,7 +12,7 @@ author = "the aolab authors"
 copyright = author
 version = release = __version__
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "mathml", "tables"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "docstrings", "mathml", "tables"]
 exclude_patterns = ["_build", "_ext", "generated"]
 
 # Pictures and figures are made here and now, by the code that stands above them; none is kept in the repository.

@@ -101,7 +101,14 @@ def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:
     """(H, W) or (H, W, channels), top row first; float32, or uint8 for byte formats."""
     context.get()  # refuses the wrong thread
     dtype = {"f1": np.uint8, "f2": np.float16, "f4": np.float32}[texture.dtype]
-    pixels = np.frombuffer(texture.read(alignment=1), dtype).reshape(texture.height, texture.width, -1)[::-1]
-    pixels = pixels[..., : channels or texture.components]
-    pixels = pixels[..., 0] if pixels.shape[2] == 1 else pixels
-    return np.ascontiguousarray(pixels, np.uint8 if dtype == np.uint8 else np.float32)
+    what = f"reading back a {texture.width}x{texture.height} texture"
+    try:
+        # our own memory: moderngl's `read` does not survive if there is none
+        pixels = np.empty((texture.height, texture.width, texture.components), dtype)
+        texture.read_into(pixels, alignment=1)
+        refuse_exhaustion(what)
+        pixels = pixels[::-1, :, : channels or texture.components]
+        pixels = pixels[..., 0] if pixels.shape[2] == 1 else pixels
+        return np.ascontiguousarray(pixels, np.uint8 if dtype == np.uint8 else np.float32)
+    except MemoryError as error:
+        raise GpuMemoryError(f"no memory for {what}: {error}") from error

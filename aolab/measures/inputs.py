@@ -122,10 +122,10 @@ def _with_harmonics(pairs: Pairs) -> Pairs:
 def _view_z(one: Buffers, who: str, size: tuple[int, int]) -> np.ndarray | None:
     if "viewZ" not in _names(one):
         return None
-    view_z = np.asarray(one["viewZ"])
-    if view_z.shape != size[::-1]:
-        raise ParameterError(f"viewZ of {who} has shape {view_z.shape}; its buffers are {size[::-1]}")
-    return view_z
+    view_z = _array(one, "viewZ", who)
+    if view_z.shape != (*size[::-1], 1):
+        raise ParameterError(f"viewZ of {who} is {_shape(view_z)}; its buffers are {size[0]}×{size[1]}")
+    return view_z[..., 0]
 
 
 def _surface(depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray:

@@ -51,14 +51,15 @@ def path_traced(
     - `direct`, `ambient`, `indirect`: what `aolab.reference(radius=None)` calls so: direct light of the lights, direct
       light of the environment, and one bounce of the lights, whatever `max_depth` is. 0 in the background.
 
-    Besides those there are viewZ, viewNormal and albedo of aolab's own G-buffer, at the pixels' centres. `samples` a
-    pixel, for each light and for the environment: they are rendered one by one and added up, so that the choice among
-    them is no noise. `timeout`: seconds, then Mitsuba is ended. Results are kept on disk unless `cache` is False.
+    Besides those there are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
+    pixel (rounded up to a full grid) are taken for each light and for the environment, which are rendered one by one
+    and added up: choosing among them is no noise. Mitsuba is ended after `timeout` seconds. Results are kept on disk,
+    as the reference's are, unless `cache` is False.
 
-    Where it differs from a render, beyond noise and antialiasing:
-    all lights cast shadows (`SceneError` for one that does not); the environment's irradiance is exact, not 9
-    coefficients; a shading normal turned away from the viewer is not seen as such, but lit from behind its surface.
-    Holes of cut-out textures have edges along texels. Vertex colours together with a texture are a `SceneError`.
+    What differs from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
+    not from 9 coefficients; textures have one level; holes of cut-out textures have edges between texels; a surface
+    whose shading normal points away from the viewer is lit from behind. What has no counterpart in Mitsuba is a
+    `SceneError`: a light without shadow, and vertex colours together with a texture.
 
     Raises `ParameterError`, also where Mitsuba is not installed, and `Error` with its last words where it fails.
     """
@@ -112,23 +113,27 @@ def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, ti
     return [name for name in BUFFERS if name in wanted]
 
 
-def _parts(buffer: str, lights: int, max_depth: int) -> list[tuple[int, Image]]:
+def _parts(buffer: str, scene: Scene, max_depth: int) -> list[tuple[int, Image]]:
     """The images that `buffer` is the sum of, each with its sign. The environment is the emitter after the lights."""
-    direct = [(1, Image(i, 2, False)) for i in range(lights)]
+    assert scene.environment is not None  # Scene fills it in
+    lights = range(len(scene.lights))
+    sky = [len(scene.lights)] if scene.environment.radiance.any() else []
+    direct = [(1, Image(i, 2, background=False)) for i in lights]
     if buffer == "direct":
         return direct
     if buffer == "ambient":
-        return [(1, Image(lights, 2, False))]
+        return [(1, Image(i, 2, background=False)) for i in sky]
     if buffer == "indirect":
-        return [(1, Image(i, 3, False)) for i in range(lights)] + [(-1, image) for _, image in direct]
-    return [(1, Image(i, max_depth, False)) for i in range(lights)] + [(1, Image(lights, max_depth, True))]
+        return [(1, Image(i, 3, background=False)) for i in lights] + [(-1, image) for _, image in direct]
+    everything = [(1, Image(i, max_depth, background=False)) for i in lights]
+    return everything + [(1, Image(i, max_depth, background=True)) for i in sky]
 
 
 def _render(
     scene: Scene, view: View, wanted: list[str], max_depth: int, samples: int, seed: int, timeout: float
 ) -> dict[str, np.ndarray]:
     needed = dict.fromkeys("radiance" if name == "image" else name for name in wanted)
-    parts = {name: _parts(name, len(scene.lights), max_depth) for name in needed}
+    parts = {name: _parts(name, scene, max_depth) for name in needed}
     images = list(dict.fromkeys(image for each in parts.values() for _, image in each))
     rendered = _run(describe(scene, view, images, samples, seed), timeout) if images else {}
     made = {name: np.zeros((view.size[1], view.size[0], 3), np.float32) for name in needed}

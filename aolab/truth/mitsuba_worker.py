@@ -48,7 +48,8 @@ def _sensor(camera: dict[str, Any], width: int, height: int) -> Any:
         "rfilter": {"type": "box"},  # a pixel is the mean over its own area, nothing of its neighbours
     }
     placed = {"to_world": mi.ScalarTransform4f().look_at(**pose), "fov_axis": "y"}
-    return mi.load_dict({"type": "perspective", **placed, **camera, "film": film, "sampler": {"type": "independent"}})
+    # measured on `boxes` at 256 samples: a fifth of the noise of independent samples, in 1.8 times the time
+    return mi.load_dict({"type": "perspective", **placed, **camera, "film": film, "sampler": {"type": "multijitter"}})
 
 
 def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:

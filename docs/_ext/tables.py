@@ -41,8 +41,13 @@ class ModuleFacts(Markdown):
     def text(self) -> str:
         module = self.module
         outputs = ", ".join(f"`{name}` ({format})" for name, format in module.outputs.items())
-        facts = {"Name": f"`{module.name}`", "Paper": module.paper, "Shader": f"`glsl/{module.shader}`", "Output": outputs}
-        return f"{inspect.getdoc(module)}\n\n" + _table(["", ""], [[name, fact] for name, fact in facts.items()])
+        rows = [
+            ["Name", f"`{module.name}`"],
+            ["Paper", module.paper],
+            ["Shader", f"`glsl/{module.shader}`"],
+            ["Output", outputs],
+        ]
+        return f"{inspect.getdoc(module)}\n\n" + _table(["", ""], rows)
 
 
 class ParameterTable(Markdown):
@@ -50,8 +55,14 @@ class ParameterTable(Markdown):
 
     def text(self) -> str:
         keys = ("name", "type", "default", "range", "unit", "description")
-        rows = [[described[key] for key in keys] for described in (describe(self.module, f) for f in self.module.model_fields)]
-        return _table([key.capitalize() for key in keys], [[f"`{row[0]}`", row[1], f"`{row[2]}`", *row[3:]] for row in rows])
+        rows = []
+        for about in (describe(self.module, name) for name in self.module.model_fields):
+            about |= {key: f"`{about[key]}`" for key in ("name", "default")}
+            about["range"] = (
+                about["range"].replace(" ", "\u00a0").replace(",\u00a0", ", ")
+            )  # a sign stays with its number
+            rows.append([about[key] for key in keys])
+        return _table([key.capitalize() for key in keys], rows)
 
 
 class ModuleTable(Markdown):
@@ -84,7 +95,9 @@ class ShellHelp(Markdown):
 
 
 def _help(command: Any, name: str) -> str:
-    context = command.context_class(command, info_name=name, terminal_width=HELP_COLUMNS, max_content_width=HELP_COLUMNS)
+    context = command.context_class(
+        command, info_name=name, terminal_width=HELP_COLUMNS, max_content_width=HELP_COLUMNS
+    )
     return f"```text\n{command.get_help(context)}\n```"
 
 

@@ -2,13 +2,13 @@
 
 import json
 import math
+from dataclasses import asdict
 
 import numpy as np
 import pytest
 
 import aolab
 from aolab.measures import compare
-from aolab.measures.metrics import Measures
 
 
 def scene_depth(shape=(40, 56)):
@@ -82,20 +82,25 @@ def test_regions_tell_where_the_error_is(noise):
     wrong[12:30, 15:17] += 0.5  # along the left side of the box: the pixels on both sides of the gap
     a, b = ({"visibility": values, "viewZ": view_z} for values in (wrong, noise))
     one = compare(a, b, border=3, flip=False)["visibility"]
-    assert one.measures["silhouettes"].bias > 0.1
+    assert one.measures["silhouettes"].bias == pytest.approx(0.5 * 18 * 2 / one.measures["silhouettes"].pixels)
     assert one.measures["border"].rmse == one.measures["interior"].rmse == 0
-    assert one.measures["thin"] == pytest.approx(Measures(0), nan_ok=True)
+    assert one.measures["thin"].pixels == 0
+    assert math.isnan(one.measures["thin"].rmse)
     regions = compare(a, b, border=3).regions
     assert regions["border"].sum() == regions["all"].sum() - (40 - 4 - 3) * (56 - 6)
     assert not (regions["interior"] & (regions["border"] | regions["silhouettes"] | regions["thin"])).any()
 
 
 def test_the_border_reaches_as_far_as_the_frames_radius(lab, boxes):
-    """A sphere at the focal distance is as many pixels wide everywhere on a plane that faces the camera."""
-    narrow, wide = (lab.render(boxes, "ssao", radius=radius) for radius in (0.01, 2.0))
-    masks = [compare(frame, frame, "visibility", flip=False).regions["border"] for frame in (narrow, wide)]
-    assert 0 < masks[0].sum() < masks[1].sum()
-    assert (masks[1] | ~masks[0]).all()
+    """And without a radius, in frames of `none`, a set share of the shorter side."""
+    frames = [*(lab.render(boxes, "ssao", radius=radius) for radius in (0.2, 1.0)), lab.render(boxes, "none")]
+    found = [compare(frame, frame, "visibility", flip=False).regions for frame in frames]
+    small, large, fixed = (regions["border"] for regions in found)
+    assert 0 < small.sum() < large.sum()
+    assert (large | ~small).all()
+    y, x = np.nonzero(found[2]["all"])
+    expected = np.minimum(np.minimum(x, 63 - x), np.minimum(y, 47 - y)) + 0.5 < 48 / 20
+    assert fixed[y, x].tolist() == expected.tolist()
 
 
 def test_directions_have_angles(noise):
@@ -157,8 +162,8 @@ def test_json_holds_every_number(noise, tmp_path):
     for name, one in found.buffers.items():
         for region, measures in one.measures.items():
             numbers = read["buffers"][name][region]
-            again = Measures(**{key: math.nan if value is None else float(value) for key, value in numbers.items()})
-            assert again == pytest.approx(measures, nan_ok=True)
+            again = {key: math.nan if value is None else float(value) for key, value in numbers.items()}
+            assert again == pytest.approx(asdict(measures), nan_ok=True)
     assert read["buffers"]["visibility"]["all"]["psnr"] == "Infinity"
 
 

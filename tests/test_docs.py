@@ -1,0 +1,99 @@
+"""The documentation and the code agree. The pages are read as text: no Sphinx, no OpenGL."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+import aolab
+from aolab.modules import MODULES, Module
+
+DOCS = Path(__file__).parent.parent / "docs"
+PAGES = {path.relative_to(DOCS).as_posix(): path.read_text(encoding="utf-8") for path in DOCS.rglob("*.md")}
+PAGES = {name: text for name, text in PAGES.items() if not name.startswith(("_build/", "generated/"))}
+
+CELL = re.compile(r"^```\{code-cell\}.*?^```$", re.MULTILINE | re.DOTALL)
+QUOTE = re.compile(r"^```\{(literalinclude|include)\} (\S+)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+QUOTES = [(page, *match.groups()) for page, text in PAGES.items() for match in QUOTE.finditer(text)]
+MARKER = re.compile(r"^:(start-at|start-after|end-at|end-before): (.+)$", re.MULTILINE)
+
+
+def page_of(module: str) -> str:
+    name = f"modules/{module}.md"
+    assert name in PAGES, f"module '{module}' has no page docs/{name}"
+    return PAGES[name]
+
+
+def prose_of(page: str) -> str:
+    return CELL.sub("", page)
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_the_page_of_a_module_has_its_facts_its_parameters_and_what_they_do(module: str) -> None:
+    page = page_of(module)
+    assert f"```{{module-facts}} {module}\n" in page
+    assert f"```{{parameters}} {module}\n" in page
+    own = MODULES[module].model_fields.keys() - Module.model_fields.keys()
+    unnamed = [name for name in own if f"`{name}" not in prose_of(page)]
+    assert not unnamed, f"docs/modules/{module}.md does not say what these do: {unnamed}"
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_the_page_of_a_module_lists_its_papers(module: str) -> None:
+    listed = page_of(module).partition("\n## References\n")[2]
+    cited = re.findall(r"(\w+)(?: and \w+| et al\.)? (\d{4})", MODULES[module].paper)
+    assert cited, f"the paper of '{module}' is not cited as NAME YEAR: {MODULES[module].paper}"
+    for author, year in cited:
+        entries = [line for line in re.split(r"\n- ", listed) if author in line and year in line]
+        assert entries, f"docs/modules/{module}.md, References: {author} {year} is missing"
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_defaults_are_not_written_a_second_time(module: str) -> None:
+    for name, field in MODULES[module].model_fields.items():
+        number = re.escape(str(field.default).removesuffix(".0"))
+        value = rf"(?<![\w.]){number}(\.0)?(?!\w|\.\d)"
+        written = re.compile(rf"^(?=.*`{name}`)(?=.*\bdefault)(?=.*{value}).*$|`{name} ?= ?{value}`", re.MULTILINE)
+        again = written.search(prose_of(page_of(module)))
+        assert not again, f"docs/modules/{module}.md repeats the default of {name}: {again[0] if again else ''}"
+
+
+@pytest.mark.parametrize(("page", "directive", "file", "options"), QUOTES)
+def test_what_a_page_quotes_is_there(page: str, directive: str, file: str, options: str) -> None:
+    source = (DOCS / page).parent / file
+    assert source.is_file(), f"docs/{page} quotes {file}, which does not exist"
+    assert ":lines:" not in options, f"docs/{page} quotes {file} by line numbers; use text, which moves with the code"
+    rest = source.read_text(encoding="utf-8")
+    markers = MARKER.findall(options)
+    assert markers or directive == "include"
+    for kind, marker in markers:
+        marker = marker.strip('"')
+        _, found, rest = rest.partition(marker)
+        assert found, f"docs/{page}: {file} has no '{marker}' (:{kind}:), or not after the marker before it"
+        if kind in ("start-at", "end-at"):
+            rest = found + rest
+
+
+def test_pages_quote_each_modules_shader() -> None:
+    for name, module in MODULES.items():
+        assert any(
+            page == f"modules/{name}.md" and file.endswith(f"glsl/{module.shader}") for page, _, file, _ in QUOTES
+        )
+
+
+def test_the_python_reference_names_all_that_is_public_and_no_more() -> None:
+    documented = re.findall(r"^\.\. auto\w+:: aolab\.(\w+)", PAGES["api.md"], re.MULTILINE)
+    assert sorted(documented) == dir(aolab)
+
+
+def test_every_page_is_reached() -> None:
+    trees = {
+        page: re.findall(r"^```\{toctree\}\n(.*?)^```$", text, re.MULTILINE | re.DOTALL) for page, text in PAGES.items()
+    }
+    reached = {"index.md"}
+    for page, entries in trees.items():
+        folder = Path(page).parent
+        reached |= {
+            (folder / f"{line}.md").as_posix() for line in "\n".join(entries).splitlines() if line[:1] not in (":", "")
+        }
+    assert reached == set(PAGES)
