@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from . import filters, surfaces
 from .draw import Buffers, Painter
 from .modules import Module
+from .occluders import Occluders
 from .passes import Estimate
 from .view import View
 
@@ -16,6 +17,7 @@ class Run:
 
     painter: Painter
     module: Module
+    occluders: Occluders
     inputs: Buffers
     view: View
     seeds: range
@@ -54,9 +56,10 @@ def _passes(run: Run, what: Estimate, surfaces: Buffers, view: View, seed: int) 
     module = run.module
     values = module.model_dump()
     constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
-    uniforms = {**view.uniforms, **values, **module.samples(seed)}
-    aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
+    uniforms = {**view.uniforms, **values, **run.occluders.uniforms, **module.samples(seed)}
+    inputs = {**surfaces, **run.occluders.inputs, **run.inputs}
+    aliases = {"occluders.glsl": f"occluders/{run.occluders.kind}.glsl"}
     made: Buffers = {}
     for step in what.passes:
-        made |= run.painter.run(step, {**surfaces, **run.inputs, **made}, uniforms, view.size, constants, aliases)
+        made |= run.painter.run(step, {**inputs, **made}, uniforms, view.size, constants, aliases)
     return {name: made[name] for name in what.outputs}

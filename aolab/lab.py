@@ -18,6 +18,7 @@ from .gl.program import Programs
 from .gl.texture import Pool, Size, check_size, refuse_exhaustion
 from .lighting import Display, EnvironmentMaps, ToneMap
 from .modules import MODULES, Module, find
+from .occluders import KINDS, Stage
 from .scene import Scene
 from .shadows import ShadowMaps, draw_shadows
 from .version import __version__
@@ -38,7 +39,7 @@ class Lab:
         context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
-        self._samplers = {"viewZ": surfaces.border_sampler()}
+        self._samplers = dict.fromkeys(("viewZ", "layersZ"), surfaces.border_sampler())
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
@@ -115,11 +116,13 @@ class Lab:
     ) -> Frame:
         shadows = self._shadow_maps(painter, scene)
         buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
-        run = Run(painter, module, self._module_inputs(scene, module), view, range(seed, seed + frames))
+        stage = Stage(painter, self._geometry, self._depth, scene, view)
+        occluders = KINDS[module.occluders](stage, module, buffers)
+        run = Run(painter, module, occluders, self._module_inputs(scene, module), view, range(seed, seed + frames))
         buffers |= estimate(run, module.estimate(), buffers)
-        buffers |= lighting.light(painter, buffers, scene, view, shadows, module)
+        buffers |= lighting.light(painter, buffers, scene, view, shadows, module, occluders)
         if bounce := module.bounce():
-            buffers |= lighting.sender(painter, buffers, view)
+            buffers |= lighting.senders(painter, buffers, scene, view, shadows, occluders)
             buffers |= estimate(run, bounce, buffers)
             buffers |= lighting.reflect(painter, buffers, "bounce", "indirect", view)
         buffers |= lighting.compose(painter, buffers, self._environments, scene, view, display)

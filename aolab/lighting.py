@@ -2,7 +2,7 @@
 
 import weakref
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import moderngl
 import numpy as np
@@ -13,6 +13,7 @@ from .gl import context
 from .gl.texture import make, refuse_exhaustion
 from .lights import DirectionalLight, PointLight, SpotLight
 from .modules import Module
+from .occluders import Occluders
 from .passes import Pass
 from .prefiltered import prefiltered
 from .scene import Scene
@@ -68,41 +69,71 @@ class Display:
     tone_map: ToneMap = "filmic"
 
 
-def light(painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps, module: Module) -> Buffers:
+def light(
+    painter: Painter,
+    buffers: Buffers,
+    scene: Scene,
+    view: View,
+    shadows: ShadowMaps,
+    module: Module,
+    occluders: Occluders,
+) -> Buffers:
     """`direct` and `ambient` radiance; a module that gives `irradiance` has it reflected, in place of the SH's."""
-    inputs = {**buffers, "shadow_atlas": shadows.atlas}
+    lit = _direct(painter, buffers, scene, view, shadows, module, occluders)
+    if "irradiance" in buffers:
+        return lit | reflect(painter, buffers, "irradiance", "ambient", view)
+    return lit | _ambient(painter, buffers, scene, view)
+
+
+def _direct(
+    painter: Painter,
+    buffers: Buffers,
+    scene: Scene,
+    view: View,
+    shadows: ShadowMaps,
+    module: Module | None = None,
+    occluders: Occluders | None = None,
+) -> Buffers:
+    """`direct`: the lights through their shadow maps and, if the module has `light_steps`, past what is on screen."""
     count = len(scene.lights)
-    values = module.model_dump()
-    light_steps = values.setdefault("light_steps", 0)
-    # what only samples towards the lights read
-    values = {"radius": 0.0, "bias": 0.0, "thickness": 0.0, **values}
+    values: dict[str, Any] = {"light_steps": 0, "radius": 0.0, "bias": 0.0, "thickness": 0.0}
+    if module is not None:
+        values |= module.model_dump()
     constants = {
         "lights": count,
         "light_slots": max(1, count),
         "shadow_slots": len(shadows.matrices),
-        "light_steps": light_steps,
+        "light_steps": values["light_steps"],
     }
-    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values}
-    aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
-    lit = painter.run(_DIRECT, inputs, uniforms, view.size, constants, aliases)
-    if "irradiance" in buffers:
-        lit |= reflect(painter, buffers, "irradiance", "ambient", view)
-    else:
-        assert scene.environment is not None  # Scene fills it in
-        coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
-        lit |= painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
-    return lit
+    occluders = occluders or Occluders("depth")
+    inputs = {**buffers, **occluders.inputs, "shadow_atlas": shadows.atlas}
+    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values, **occluders.uniforms}
+    aliases = {"occluders.glsl": f"occluders/{occluders.kind}.glsl"}
+    return painter.run(_DIRECT, inputs, uniforms, view.size, constants, aliases)
+
+
+def _ambient(painter: Painter, buffers: Buffers, scene: Scene, view: View) -> Buffers:
+    assert scene.environment is not None  # Scene fills it in
+    coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
+    return painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
+
+
+def senders(
+    painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps, occluders: Occluders
+) -> Buffers:
+    """`sender`: what leaves each surface before any bounce, direct + ambient light; hidden ones join the occluders.
+
+    Of a hidden surface only the direct light is known: its occlusion was not estimated.
+    """
+    for suffix, surface in occluders.hidden.items():
+        occluders.inputs[f"sender{suffix}"] = _direct(painter, surface, scene, view, shadows)["direct"]
+    return painter.run(_SENDER, buffers, view.uniforms, view.size)
 
 
 def reflect(painter: Painter, buffers: Buffers, irradiance: str, radiance: str, view: View) -> Buffers:
     """The buffer `irradiance`, reflected diffusely, as `radiance`."""
     step = Pass(radiance, "pipeline/reflect.frag", {radiance: "RGBA16F"})
     return painter.run(step, {**buffers, "source": buffers[irradiance]}, view.uniforms, view.size)
-
-
-def sender(painter: Painter, buffers: Buffers, view: View) -> Buffers:
-    """`sender`: what leaves each surface before any bounce, direct + ambient."""
-    return painter.run(_SENDER, buffers, view.uniforms, view.size)
 
 
 def compose(

@@ -35,7 +35,7 @@ def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: S
     """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F)."""
     gl = context.get()
     buffers = {name: painter.take(view.size, format) for name, format in G_BUFFER.items()}
-    program = painter.programs.get("pipeline/gbuffer.frag", vertex="pipeline/gbuffer.vert")
+    program = painter.programs.get("pipeline/gbuffer.frag", {"peel": False}, vertex="pipeline/gbuffer.vert")
     # set a mesh at a time, by Geometry.draw
     program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
     painter.bind_unit(program, "base_texture", 0)

@@ -20,8 +20,6 @@ uniform float thickness;       // radii
 uniform float bleeding;        // scales A_s
 uniform float distance_clamp;  // scene units
 uniform vec4 kernel[directions];
-uniform sampler2D viewNormal;
-uniform sampler2D sender;
 uniform vec4 ray_from_pixel;
 
 out vec4 bounce;
@@ -43,22 +41,21 @@ void main() {
         vec3 way = frame * kernel[i].xyz;
         float offset = interleavedOffset(kernel[i].w, set);
         bool blocked = false;
-        vec3 senderPos = viewPos;
+        Occluder first;
         for (int j = 0; j < steps; ++j) {
-            vec3 occluderPos;
+            Occluder occluder;
             vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
-            bool hit = isBlocked(samplePos, thickness * radius, occluderPos);
-            if (hit && !blocked) senderPos = occluderPos;  // the first one along the way hides the others
+            bool hit = isBlocked(samplePos, thickness * radius, occluder);
+            if (!blocked) first = occluder;  // the first one along the way hides the others
             blocked = blocked || hit;
         }
         if (!blocked) continue;
-        vec2 uv = pixelAt(senderPos, pixel_from_ray) * texel_size;
-        vec3 toSender = senderPos - viewPos;
+        vec3 toSender = first.viewPos - viewPos;
         float squaredDistance = max(dot(toSender, toSender), distance_clamp * distance_clamp);
         vec3 towards = toSender * inversesqrt(max(dot(toSender, toSender), 1e-20));
         float cosReceiver = max(dot(normal, towards), 0.0);
-        float cosSender = max(dot(texture(viewNormal, uv).xyz, -towards), 0.0);
-        sum += texture(sender, uv).rgb * (cosReceiver * cosSender / squaredDistance);
+        float cosSender = max(dot(occluderNormal(first), -towards), 0.0);
+        sum += occluderRadiance(first) * (cosReceiver * cosSender / squaredDistance);
     }
     float patchArea = bleeding * PI * radius * radius / float(directions);
     bounce = vec4(patchArea * sum, 1.0);

@@ -20,7 +20,6 @@ uniform float radius;     // scene units
 uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform vec4 kernel[directions];
-uniform sampler2D viewNormal;
 uniform sampler2D prefiltered_environment;
 uniform vec4 ray_from_pixel;
 uniform mat4 world_from_view;
@@ -48,9 +47,9 @@ void main() {
         float offset = interleavedOffset(kernel[i].w, set);
         bool blocked = false;
         for (int j = 0; j < steps; ++j) {
-            vec3 occluderPos;
+            Occluder occluder;
             vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
-            blocked = isBlocked(samplePos, thickness * radius, occluderPos) || blocked;
+            blocked = isBlocked(samplePos, thickness * radius, occluder) || blocked;
         }
         float openness = blocked ? 0.0 : 1.0;
         light += openness * texture(prefiltered_environment, octahedralUv(worldFrame * kernel[i].xyz)).rgb;

@@ -67,7 +67,10 @@ class Module(Parameters):
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
     parts: ClassVar[Mapping[str, tuple[str, int]]] = {}
 
-    occluders: Literal["depth"] = parameter("depth", "What is tested for blocking: depth is the camera's one layer.")
+    occluders: Literal["depth", "layers"] = parameter(
+        "depth", "What is tested for blocking: the camera's one layer of depth, or `layers` of them, peeled."
+    )
+    layers: int = parameter(4, "Depth layers, where those are the occluders: two make a solid.", ge=2, le=4)
     filter: Literal["none", "box4", "bilateral"] = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
     )

@@ -11,7 +11,6 @@ const int light_slots;   // the same, but at least 1: GLSL has no empty array
 const int shadow_slots;
 const int light_steps;   // samples on the screen towards each light; 0 for none
 
-uniform sampler2D viewNormal;
 uniform sampler2D albedo;
 uniform sampler2DShadow shadow_atlas;
 uniform vec4 ray_from_pixel;
@@ -36,9 +35,9 @@ out vec4 direct;
 float reachesLight(vec3 viewPos, vec3 viewToLight, float reach, float offset) {
     bool blocked = false;
     for (int j = 0; j < light_steps; ++j) {
-        vec3 occluderPos;
+        Occluder occluder;
         vec3 samplePos = viewPos + viewToLight * (reach * (float(j) + offset) / float(light_steps));
-        blocked = isBlocked(samplePos, thickness * radius, occluderPos) || blocked;
+        blocked = isBlocked(samplePos, thickness * radius, occluder) || blocked;
     }
     return blocked ? 0.0 : 1.0;
 }
