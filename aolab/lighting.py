@@ -100,12 +100,13 @@ def _direct(
     if module is not None:
         values |= module.model_dump()
     constants = {
+        **{key: value for key, value in values.items() if isinstance(value, int)},
         "lights": count,
         "light_slots": max(1, count),
         "shadow_slots": len(shadows.matrices),
-        "light_steps": values["light_steps"],
     }
-    occluders = occluders or Occluders("depth")
+    if not occluders or not values["light_steps"]:
+        occluders = Occluders("depth")  # the shader asks nothing of it
     inputs = {**buffers, **occluders.inputs, "shadow_atlas": shadows.atlas}
     uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values, **occluders.uniforms}
     aliases = {"occluders.glsl": f"occluders/{occluders.kind}.glsl"}
@@ -125,8 +126,9 @@ def senders(
 
     Of a hidden surface only the direct light is known: its occlusion was not estimated.
     """
-    for suffix, surface in occluders.hidden.items():
-        occluders.inputs[f"sender{suffix}"] = _direct(painter, surface, scene, view, shadows)["direct"]
+    for suffix, hidden in occluders.hidden.items():
+        lit = _direct(painter, hidden.surfaces, scene, hidden.view, shadows)
+        occluders.inputs[f"sender{suffix}"] = lit["direct"]
     return painter.run(_SENDER, buffers, view.uniforms, view.size)
 
 

@@ -13,6 +13,7 @@ from .view import View, ray_scale_offset
 
 G_BUFFER = {"viewZ": "R32F", "viewNormal": "RGBA16F", "albedo": "RGBA16F"}
 BACKGROUND_Z = -np.inf
+BORDERED = ("viewZ", "layersZ", "viewZ1", "viewZ2", "viewZ3", "viewZ4")  # depths that are asked for off the screen
 
 _SHRINK = Pass("shrink", "pipeline/shrink.frag", G_BUFFER)
 
@@ -21,18 +22,22 @@ class DepthTargets:
     """Depth buffers by size: scratch space that no frame keeps."""
 
     def __init__(self) -> None:
-        self._depth: tuple[tuple[int, int], moderngl.Renderbuffer] | None = None
+        self._depth: dict[tuple[int, int], moderngl.Renderbuffer] = {}
 
     def of(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
-        if self._depth is None or self._depth[0] != size:
+        if size not in self._depth:
+            if len(self._depth) >= 4:  # the image, and the further views; older ones are of sizes left behind
+                self._depth.clear()
             depth = context.get().depth_renderbuffer(size)
             refuse_exhaustion(f"a depth buffer of {size[0]}x{size[1]}")
-            self._depth = size, depth
-        return self._depth[1]
+            self._depth[size] = depth
+        return self._depth[size]
 
 
-def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View) -> Buffers:
-    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F)."""
+def g_buffer(
+    painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View, name: str = "g_buffer"
+) -> Buffers:
+    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F); `name` is for the timings."""
     gl = context.get()
     buffers = {name: painter.take(view.size, format) for name, format in G_BUFFER.items()}
     program = painter.programs.get("pipeline/gbuffer.frag", {"peel": False}, vertex="pipeline/gbuffer.vert")
@@ -40,7 +45,7 @@ def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: S
     program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
     painter.bind_unit(program, "base_texture", 0)
     framebuffer = painter.pool.framebuffer(list(buffers.values()), depth.of(view.size))
-    with painter.timer.measure("g_buffer"):
+    with painter.timer.measure(name):
         framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         painter.pool.framebuffer([buffers["viewZ"]]).clear(red=BACKGROUND_Z)
         framebuffer.use()

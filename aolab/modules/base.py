@@ -67,10 +67,13 @@ class Module(Parameters):
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
     parts: ClassVar[Mapping[str, tuple[str, int]]] = {}
 
-    occluders: Literal["depth", "layers"] = parameter(
-        "depth", "What is tested for blocking: the camera's one layer of depth, or `layers` of them, peeled."
+    occluders: Literal["depth", "layers", "views"] = parameter(
+        "depth", "What is tested for blocking: the camera's depth, `layers` of it, peeled, or further `views`."
     )
     layers: int = parameter(4, "Depth layers, where those are the occluders: two make a solid.", ge=2, le=4)
+    views: int = parameter(4, "Cameras beside the camera, where those are the occluders.", ge=1, le=4)
+    view_scale: float = parameter(0.5, "Resolution of the further views, as a share of the image's.", ge=0.125, le=1)
+    view_layers: int = parameter(1, "Peeled layers of each further view.", ge=1, le=4)
     filter: Literal["none", "box4", "bilateral"] = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
     )
