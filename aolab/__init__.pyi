@@ -16,6 +16,10 @@ from .lights import DirectionalLight as DirectionalLight
 from .lights import PointLight as PointLight
 from .lights import SpotLight as SpotLight
 from .loading import load as load
+from .measures import Comparison as Comparison
+from .measures import compare as compare
+from .measures import compare_modules as compare_modules
+from .measures import relighting_error as relighting_error
 from .mesh import Material as Material
 from .mesh import Mesh as Mesh
 from .mesh import Texture as Texture

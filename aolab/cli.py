@@ -132,6 +132,25 @@ def _key_value(text: str) -> tuple[str, Any]:
 
 
 @app.command()
+def compare(
+    scene: Annotated[str, typer.Argument(help="A scene's name, or a model file.")],
+    modules: Annotated[str | None, typer.Option(metavar="A,B", help="As in 'none,ssao?steps=4'. Default: all.")] = None,
+    size: Annotated[str, typer.Option(metavar="WxH", help="Pixels.")] = "480x270",
+    rays: options.Rays = 256,
+    radius: options.Radius = None,
+    buffer: Annotated[str, typer.Option(help="What is compared.")] = "visibility",
+    output: Annotated[
+        Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="Draw the sheet of pictures.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Compare modules with the ray-traced truth, sorted by error; with -o, as a sheet of pictures."""
+    from .measures.command import compare_command
+
+    print(compare_command(scene, modules, size, rays, radius, buffer, output, as_json))
+
+
+@app.command()
 def modules(name: Annotated[str | None, typer.Argument(help="One module only.")] = None, as_json: Json = False) -> None:
     """List the modules and their parameters: name, type, default, range, unit, and what it does."""
     from .errors import suggestion

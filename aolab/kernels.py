@@ -44,6 +44,4 @@ def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
     It fades over the outer share `falloff` of the squared radius: 0 is a hard edge (occlusion within a radius), 1 is
     the 1 - d²/R² of HBAO (Bavoil, Sainz and Dimitrov 2008).
     """
-    if falloff == 0:
-        return (squared_distance < 1).astype(np.float64)
-    return np.clip((1 - squared_distance) / falloff, 0, 1)
+    return np.clip((1 - squared_distance) / max(falloff, 1e-4), 0, 1)

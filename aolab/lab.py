@@ -39,7 +39,7 @@ class Lab:
         context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
-        self._samplers = dict.fromkeys(surfaces.BORDERED, surfaces.border_sampler())
+        self._samplers = surfaces.border_samplers()
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 

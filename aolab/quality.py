@@ -126,10 +126,10 @@ def curve(
     for module in _chosen(modules, judge, scene):
         like = module if hasattr(module, "radius") else judge
         truth = reference(scene, size=size, rays=rays, like=like, seed=seed, buffers=("visibility", "standard_error"))
-        noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
         for one, varied in settings(module):
             error = visibility_error(lab.render(scene, one, seed=seed), truth)  # compiles, too
             variants.append((one, varied, one == module, error))
+        noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
 
     times = _times(lab, scene, [variant[0] for variant in variants], frames, shared)
     points = [
@@ -240,7 +240,7 @@ def quality_command(scene: str, output: Path, **how: Any) -> Curve:
     try:
         from .quality_picture import draw
     except ImportError as error:
-        raise Error(f'the picture needs matplotlib: pip install "aolab[measures]" ({error})') from error
+        raise Error(f'the picture needs matplotlib: pip install "aolab[truth]" ({error})') from error
     measured = curve(scene, **how)
     with replacing(output) as file:
         draw(measured).savefig(file, format="png")

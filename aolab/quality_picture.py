@@ -12,7 +12,7 @@ MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
 def draw(curve: Curve) -> Figure:
-    """Both axes logarithmic. Stars are the modules' defaults; the dotted line is what the truth itself may be off."""
+    """Both axes logarithmic. Stars are the modules' defaults; a dotted line, if in reach, is the truth's own error."""
     figure = Figure((12.5, 6.2), dpi=110, facecolor="white")
     axes = figure.add_axes((0.065, 0.125, 0.59, 0.79))
     names = list(dict.fromkeys(point.module for point in curve.points))
@@ -25,12 +25,13 @@ def draw(curve: Curve) -> Figure:
         x, y = [point.milliseconds for point in defaults], [point.rmse for point in defaults]
         axes.scatter(x, y, s=190, color=color, marker="*", edgecolors="black", linewidths=0.8, zorder=4)
     _front(axes, curve)
-    axes.axhline(curve.noise, color="0.4", linestyle=":", linewidth=1, label="the truth's standard error")
     axes.scatter([], [], s=120, color="white", marker="*", edgecolors="black", linewidths=0.8, label="default")
 
     axes.set(
         xscale="log", yscale="log", xlabel="milliseconds that the module adds to a frame", ylabel="RMSE of visibility"
     )
+    if curve.noise > axes.get_ylim()[0]:  # else it is far below, and the foot of the picture says how far
+        axes.axhline(curve.noise, color="0.4", linestyle=":", linewidth=1, label="the truth's standard error")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(StrMethodFormatter("{x:g}"))
@@ -40,7 +41,9 @@ def draw(curve: Curve) -> Figure:
     axes.set_axisbelow(True)
     axes.legend(fontsize=9, loc="lower left", bbox_to_anchor=(1.02, -0.01), borderaxespad=0, frameon=False)
     axes.set_title(f"Error against time: {curve.title}", fontsize=11, loc="left")
-    figure.text(0.065, 0.02, curve.place, fontsize=8.5, color="0.3")
+    figure.text(
+        0.065, 0.02, f"{curve.place}; the truth's standard error is {curve.noise:.4f}", fontsize=8.5, color="0.3"
+    )
     return figure
 
 

@@ -41,7 +41,7 @@ class Axis:
         if self.whole:
             return trial.suggest_int(self.name, int(self.low), int(self.high), log=self.log)
         value = trial.suggest_float(self.name, self.low, self.high, log=self.log)
-        return value if value == self.start else min(max(float(f"{value:.{DIGITS}g}"), self.low), self.high)
+        return min(max(float(f"{value:.{DIGITS}g}"), self.low), self.high)
 
 
 def tunable(module: Module) -> list[str]:

@@ -10,7 +10,7 @@ from .draw import Painter
 from .errors import SceneError
 from .gl import context
 from .gl.geometry import Geometry
-from .gl.texture import refuse_exhaustion
+from .gl.texture import attach, refuse_exhaustion
 from .lights import DirectionalLight, Light, PointLight, SpotLight
 from .scene import Scene
 from .view import matrix_bytes
@@ -100,7 +100,7 @@ def draw_shadows(painter: Painter, geometry: Geometry, scene: Scene) -> ShadowMa
     atlas.compare_func = "<="
     atlas.filter = (moderngl.LINEAR, moderngl.LINEAR)
     atlas.repeat_x = atlas.repeat_y = False
-    framebuffer = gl.framebuffer(depth_attachment=atlas)
+    framebuffer = attach([], atlas)
     program = painter.programs.get("pipeline/shadow.frag", vertex="pipeline/shadow.vert")
     tiles = np.array([(i % side / side, i // side / side, 1 / side) for i in range(max(1, len(matrices)))])
     with painter.timer.measure("shadows"):

@@ -6,14 +6,13 @@ import numpy as np
 from .draw import Buffers, Painter
 from .gl import context
 from .gl.geometry import Geometry
-from .gl.texture import refuse_exhaustion
+from .gl.texture import attach
 from .passes import Pass
 from .scene import Scene
 from .view import View, ray_scale_offset
 
 G_BUFFER = {"viewZ": "R32F", "viewNormal": "RGBA16F", "albedo": "RGBA16F"}
 BACKGROUND_Z = -np.inf
-BORDERED = ("viewZ", "layersZ", "viewZ1", "viewZ2", "viewZ3", "viewZ4")  # depths that are asked for off the screen
 
 _SHRINK = Pass("shrink", "pipeline/shrink.frag", G_BUFFER)
 
@@ -29,7 +28,7 @@ class DepthTargets:
             if len(self._depth) >= 4:  # the image, and the further views; older ones are of sizes left behind
                 self._depth.clear()
             depth = context.get().depth_renderbuffer(size)
-            refuse_exhaustion(f"a depth buffer of {size[0]}x{size[1]}")
+            attach([], depth)  # refuses one that the driver had no memory for
             self._depth[size] = depth
         return self._depth[size]
 
@@ -61,8 +60,21 @@ def shrink(painter: Painter, buffers: Buffers, view: View, small: View) -> Buffe
     return painter.run(_SHRINK, buffers, uniforms, small.size)
 
 
-def border_sampler() -> moderngl.Sampler:
-    """Outside of the screen nothing is known, and nothing blocks: viewZ is the background's there."""
+def border_samplers() -> dict[str, moderngl.Sampler]:
+    """For depths that are asked for off the screen, where nothing is known.
+
+    The camera's are the background's there: nothing blocks. Those of further views are infinitely far: they do not
+    say that a point is in the open.
+    """
+    background = _border((BACKGROUND_Z,) * 4)
+    unknown = _border((np.inf, np.inf, BACKGROUND_Z, BACKGROUND_Z))
+    return {
+        **dict.fromkeys(("viewZ", "layersZ"), background),
+        **dict.fromkeys(("viewZ1", "viewZ2", "viewZ3", "viewZ4"), unknown),
+    }
+
+
+def _border(color: tuple[float, float, float, float]) -> moderngl.Sampler:
     sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=(moderngl.NEAREST, moderngl.NEAREST))
-    sampler.border_color = (BACKGROUND_Z, 0.0, 0.0, 0.0)
+    sampler.border_color = color
     return sampler

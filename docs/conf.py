@@ -19,6 +19,7 @@ exclude_patterns = ["_build", "_ext", "generated"]
 nb_execution_mode = "auto"
 nb_execution_timeout = 120
 nb_execution_raise_on_error = True
+nb_execution_show_tb = True
 nb_merge_streams = True
 nb_render_markdown_format = "myst"  # for tables
 

@@ -1,6 +1,11 @@
 """What the tests share: the GL context, a lab, small scenes with known answers, real models."""
 
-from collections.abc import Callable, Sequence
+import os
+import shutil
+import subprocess
+import sys
+import textwrap
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 import moderngl
@@ -9,6 +14,7 @@ import pytest
 import small_scenes
 
 import aolab
+from aolab import paths
 from aolab.draw import Painter
 from aolab.gl import context, texture
 from aolab.gl.program import Programs
@@ -85,3 +91,33 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
         return texture.read(made["value"])[0]
 
     return evaluate
+
+
+@pytest.fixture
+def python(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Runs Python text in a process of its own: `python("import aolab", AOLAB_DEVICE="9")`; None unsets a variable.
+
+    For what a test must not do to its own process: fork it, take its memory, break its driver.
+    """
+
+    def run(text: str, **variables: str | None) -> subprocess.CompletedProcess[str]:
+        changed = {name: value for name, value in variables.items() if value is not None}
+        kept = {name: value for name, value in os.environ.items() if name not in variables}
+        command = [sys.executable, "-c", textwrap.dedent(text)]
+        return subprocess.run(
+            command, cwd=tmp_path, env=kept | changed, capture_output=True, text=True, timeout=120, check=False
+        )
+
+    return run
+
+
+@pytest.fixture
+def shaders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+    """A copy of glsl/ to edit, which labs made in this test compile."""
+    folder = tmp_path / "glsl"
+    shutil.copytree(paths.glsl(), folder)
+    monkeypatch.setenv("AOLAB_GLSL", str(folder))
+    paths._find.cache_clear()
+    yield folder
+    monkeypatch.undo()
+    paths._find.cache_clear()

@@ -139,6 +139,6 @@ def _explain(message: str, vertex: Source, fragment: Source) -> str:
     """moderngl's report, told in our files and lines."""
     stage = vertex if "vertex_shader" in message.splitlines()[:4] else fragment
     report = [line for line in message.splitlines() if line.strip() and set(line.strip()) != {"="}]
-    titles = ("GLSL Compiler failed", "GLSL Linker failed", "vertex_shader", "fragment_shader")
+    titles = ("GLSL Compiler failed", "GLSL Linker failed", "vertex_shader", "fragment_shader", "Program")
     detail = "\n".join(line for line in report if line.strip() not in titles)
     return f"{stage.name} does not compile:\n{stage.locate(detail)}"

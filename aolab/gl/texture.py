@@ -22,6 +22,7 @@ FORMATS = {
 }
 _BYTES = {"f1": 1, "f2": 2, "f4": 4}
 Size = tuple[int, int]
+Depth = moderngl.Texture | moderngl.Renderbuffer
 
 
 def check_size(size: Size) -> Size:
@@ -63,6 +64,17 @@ def refuse_exhaustion(what: str) -> None:
         raise GpuMemoryError(f"the driver refused {what}: {error}")
 
 
+def attach(textures: list[moderngl.Texture], depth: Depth | None = None) -> moderngl.Framebuffer:
+    """A framebuffer over these. Raises `GpuMemoryError`: some drivers say only here that there was no memory."""
+    try:
+        return context.get().framebuffer(textures, depth)
+    except moderngl.Error as error:
+        width, height = (*textures, depth)[0].size  # pyright: ignore[reportOptionalMemberAccess]
+        raise GpuMemoryError(
+            f"the driver has no room to draw at {width}x{height}: {error}; use a smaller size"
+        ) from error
+
+
 class Pool:
     """Textures and their framebuffers, used again when nobody holds them."""
 
@@ -80,13 +92,11 @@ class Pool:
         for size, format, texture in lent:
             self._free[size, format].append(texture)
 
-    def framebuffer(
-        self, textures: list[moderngl.Texture], depth: moderngl.Renderbuffer | None = None
-    ) -> moderngl.Framebuffer:
+    def framebuffer(self, textures: list[moderngl.Texture], depth: Depth | None = None) -> moderngl.Framebuffer:
         """A framebuffer over these textures, kept."""
         key = (*(texture.glo for texture in textures), -1 if depth is None else depth.glo)
         if key not in self._framebuffers:
-            self._framebuffers[key] = context.get().framebuffer(textures, depth)
+            self._framebuffers[key] = attach(textures, depth)
         return self._framebuffers[key]
 
     def trim(self, sizes: set[Size]) -> None:

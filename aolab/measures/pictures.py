@@ -4,16 +4,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib import colormaps
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
-from matplotlib.figure import Figure
 from PIL import Image
 
+from ..errors import ParameterError
 from .comparison import BufferComparison
 from .kinds import picture
+
+try:
+    from matplotlib import colormaps
+    from matplotlib.axes import Axes
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+    from matplotlib.figure import Figure
+except ImportError as error:
+    raise ParameterError(f'pictures of errors need matplotlib: pip install "aolab[truth]" ({error})') from error
 
 # zero in the middle and white, more is red; or, for magnitudes, perceptually uniform from dark to bright
 SIGNED, MAGNITUDE = "RdBu_r", "viridis"

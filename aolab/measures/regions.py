@@ -37,7 +37,7 @@ def silhouettes(view_z: np.ndarray, width: int = SILHOUETTE_PX) -> np.ndarray:
     """
     near = nearness(view_z)
     beside = _beside_gap(near) | _beside_gap(near.T).T
-    return binary_dilation(beside, np.ones((3, 3)), iterations=width) if width > 1 else beside
+    return binary_dilation(beside, np.ones((3, 3)), iterations=width - 1) if width > 1 else beside
 
 
 def _beside_gap(near: np.ndarray) -> np.ndarray:

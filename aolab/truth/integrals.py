@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from ..environment import Environment
+from ..kernels import influence
 from ..lights import Light
 from ..spherical_harmonics import basis
 from .casters import Hits
@@ -35,11 +36,6 @@ class Setting:
     def limit(self) -> float:
         """How far rays go, scene units: nothing beyond it counts."""
         return np.inf if self.measure == "exponential" else self.radius
-
-
-def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
-    """How much an occluder counts at a squared distance in squared radii: the twin of glsl/lib/falloff.glsl."""
-    return np.clip((1 - squared_distance) / np.float32(max(falloff, 1e-4)), 0, 1)
 
 
 def fuzzy_openness(distance: np.ndarray, measure: Measure) -> np.ndarray:

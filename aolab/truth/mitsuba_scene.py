@@ -87,7 +87,7 @@ def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre:
     assert mesh.normals is not None  # Mesh makes them
     linear, translation = instance.world_from_local[:3, :3], instance.world_from_local[:3, 3]
     cofactor = np.linalg.det(linear) * np.linalg.inv(linear).T
-    normals = mesh.normals.astype(np.float64) @ cofactor.T
+    normals = mesh.normals.astype(np.float64) @ linear.T
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
     vertices = (mesh.vertices.astype(np.float64) @ linear.T + translation - centre) * scale
     arrays[f"{name}.vertices"] = vertices.astype(np.float32)

@@ -13,7 +13,7 @@ from aolab.loading import describe_scene, scene_names
 from aolab.modules import MODULES, Module
 from aolab.parameters import describe
 
-HELP_COLUMNS = 92  # what a page shows without scrolling
+HELP_COLUMNS = 84  # what a page shows without scrolling
 
 
 class Markdown(SphinxDirective):

@@ -20,7 +20,7 @@ int interleavedSet(ivec2 pixel) {
 }
 
 // The frame around `n`, turned by the angle of this set: the one kernel seen by 16 pixels in 16 directions
-// (Umenhoffer et al. 2009, section 4: "one set rotated by 16 angles").
+// (Umenhoffer et al. 2009, section 4.2).
 mat3 interleavedFrame(vec3 n, int set) {
     float angleRad = 2.0 * PI * float(set) / 16.0;
     mat3 frame = frameAround(n);

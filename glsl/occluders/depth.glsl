@@ -15,7 +15,7 @@ struct Occluder {
 };
 
 // Is the view-space point `samplePos` blocked, and by what? What is seen there has no known back: it is taken to be
-// `thickness` deep, so that a far foreground throws no halo (Umenhoffer et al. 2009, section 4: R > z - z* > 0).
+// `thickness` deep, so that a far foreground throws no halo (Umenhoffer et al. 2009, section 4.3: R > z - z* > 0).
 // The occluder is where the eye's ray to the point meets the surface.
 bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;

@@ -1,5 +1,8 @@
-// Occluders: the camera's depth layer, and what up to four more cameras see (SSDO, Ritschel et al. 2009, section 4,
-// "Additional Cameras"). What blocks in any of them blocks; so hidden, grazing and off-screen surfaces take part.
+// Occluders: the camera's depth, and what up to four more cameras see (SSDO, Ritschel et al. 2009, section 4, "Additional
+// Cameras"). So hidden, grazing and off-screen surfaces take part.
+// The paper does not say what to do where views disagree. What one camera sees is in the open, so a point is blocked if it
+// lies behind the surface in every view that has it in its picture; of these surfaces the nearest is the occluder.
+// With peeled layers in each view, a point inside a solid in any of them is blocked.
 
 #include "lib/solids.glsl"
 
@@ -28,6 +31,8 @@ uniform vec4 views_pixel_from_ray;
 uniform mat4 view_from_camera[4];            // a further view's space from the camera's view space
 uniform mat4 camera_from_view[4];
 
+const float UNKNOWN = 3.0e38;
+
 // What blocks: where, in the camera's view space, and where its properties are stored. View 0 is the camera.
 struct Occluder {
     vec3 viewPos;
@@ -42,28 +47,32 @@ vec4 depthsOf(int view, vec2 uv) {
     return texture(viewZ4, uv);
 }
 
-// Is the view-space point `samplePos` blocked, and by what? The camera is asked first, then the further views in turn.
+// Is the view-space point `samplePos` blocked, and by what? Off a view's picture its depth is +infinity: it has no say.
 bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.view = 0;
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
-    occluder.viewPos = samplePos * (surfaceZ / samplePos.z);
-    bool blocked = abs(surfaceZ - samplePos.z - 0.5 * thickness) < 0.5 * thickness;
+    bool onScreen = all(lessThan(abs(occluder.uv - 0.5), vec2(0.5)));
+    float depthBehind = onScreen ? surfaceZ - samplePos.z : UNKNOWN;
+    bool insideSolid = false;
+    vec3 thereOfNearest = samplePos;
+    float nearestZ = surfaceZ;
     for (int k = 1; k <= views; ++k) {
         vec3 there = (view_from_camera[k - 1] * vec4(samplePos, 1.0)).xyz;
         vec2 uv = pixelAt(there, views_pixel_from_ray) * views_texel_size;
         vec4 z = depthsOf(k, uv);
-        float depthBehind = z.x - there.z;
-        bool hit = abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;
-        if (view_layers > 1) hit = solidAt(z, there.z, thickness) >= 0;
-        if (hit && !blocked) {
-            blocked = true;
+        if (view_layers > 1) insideSolid = insideSolid || solidAt(z, there.z, thickness) >= 0;
+        if (z.x - there.z < depthBehind) {
+            depthBehind = z.x - there.z;
             occluder.view = k;
             occluder.uv = uv;
-            occluder.viewPos = (camera_from_view[k - 1] * vec4(there * (z.x / there.z), 1.0)).xyz;
+            thereOfNearest = there;
+            nearestZ = z.x;
         }
     }
-    return blocked;
+    occluder.viewPos = thereOfNearest * (nearestZ / thereOfNearest.z);
+    if (occluder.view > 0) occluder.viewPos = (camera_from_view[occluder.view - 1] * vec4(occluder.viewPos, 1.0)).xyz;
+    return insideSolid || abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;
 }
 
 // The occluder's unit normal, in the camera's view space.

@@ -1,5 +1,5 @@
 // The mean over 4 pixels in a row or column that lie on the same surface; twice, it is the mean over 4×4: every set of
-// the interleaved pattern once (Umenhoffer et al. 2009, section 4: "a box filter that skips pixels across a depth gap").
+// the interleaved pattern once (Umenhoffer et al. 2009, section 4.2).
 // Inputs: source (any channels), viewZ, viewNormal. Output: filtered, on an even window: moved by half a pixel.
 
 #include "lib/space.glsl"

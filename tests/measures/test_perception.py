@@ -1,11 +1,15 @@
 """SSIM against scikit-image, FLIP against its properties."""
 
+import sys
+
 import flip_evaluator
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 from skimage.metrics import structural_similarity
 
+import aolab
+from aolab.measures import compare
 from aolab.measures.perception import exposures, flip_map, ssim_map
 
 
@@ -67,6 +71,18 @@ def test_a_black_reference_is_compared_too():
     black, grey = np.zeros((16, 16, 3)), np.full((16, 16, 3), 0.5)
     assert flip_map(black, black, hdr=True).max() == 0
     assert flip_map(grey, black, hdr=True).min() > 0.3
+
+
+def test_a_missing_package_is_named_with_the_fix(monkeypatch, noise):
+    """What an import finds as None is not installed."""
+    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
+    found = {"visibility": noise}
+    with pytest.raises(aolab.ParameterError, match=r"aolab\[truth\].*flip=False"):
+        compare(found, found)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    monkeypatch.delitem(sys.modules, "aolab.measures.pictures", raising=False)
+    with pytest.raises(aolab.ParameterError, match=r"matplotlib: pip install .aolab\[truth\]"):
+        compare(found, found, flip=False).picture()
 
 
 def test_a_mostly_black_reference_takes_few_exposures():
