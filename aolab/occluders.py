@@ -42,7 +42,7 @@ class Hidden:
 
 @dataclass
 class Occluders:
-    """`inputs` and `uniforms` for glsl/occluders/KIND.glsl; `hidden` surfaces may send light, by their names' suffix."""
+    """`inputs` and `uniforms` of glsl/occluders/KIND.glsl; `hidden`: surfaces that may send light, by names' suffix."""
 
     kind: str
     inputs: Buffers = field(default_factory=dict)
@@ -108,8 +108,11 @@ DISPLACEMENTS = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.6, 
 
 
 def further_cameras(camera: Camera, scene: Scene) -> list[Camera]:
-    """The cameras of SSDO, section 4: displaced by a unit vector times the scene's bounding-sphere radius, and turned
-    to the same centre of interest: the point of the view axis beside the scene's centre, or the target if farther."""  # fmt: skip
+    """The cameras of SSDO, section 4: displaced by a unit vector times the scene's bounding-sphere radius.
+
+    They look at the same centre of interest: the point of the view axis beside the scene's centre, or the target if
+    that is farther.
+    """
     axes = camera.view_from_world[:3, :3]  # rows: right, up, backward
     eye, forward = np.asarray(camera.eye), -axes[2]
     distance = max(np.linalg.norm(np.subtract(camera.target, eye)), (scene.bounds.mean(axis=0) - eye) @ forward)
@@ -180,7 +183,7 @@ def _say_what_is_open(scene: Scene) -> None:
     if fresh:
         names = ", ".join(sorted({mesh.name for mesh in fresh})[:5])
         warnings.warn(
-            f"{len(fresh)} of {len(meshes)} meshes are not closed ({names}): between two layers there need be no solid. "
+            f"{len(fresh)} of {len(meshes)} meshes are not closed ({names}): between two layers need be no solid. "
             "Where the last layer has no back, `thickness` closes it",
             Notice,
             stacklevel=2,

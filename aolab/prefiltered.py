@@ -27,7 +27,7 @@ def octahedral_uv(directions: np.ndarray) -> np.ndarray:
 
 
 def prefiltered(environment: Environment, solid_angle: float) -> np.ndarray:
-    """(n, n, 3) float32 radiance on an octahedral map, blurred by a lobe of `solid_angle` steradians; 0 leaves it sharp.
+    """(n, n, 3) float32 radiance on an octahedral map, blurred by a lobe of `solid_angle` steradians; 0: sharp.
 
     The lobe is von Mises and Fisher's, exp(κ cosθ); the solid angle it takes up, 1 / ∫ f², is about 4π / κ. A constant
     environment stays exactly that.

@@ -66,7 +66,7 @@ def border_samplers() -> dict[str, moderngl.Sampler]:
     The camera's are the background's there: nothing blocks. Those of further views are infinitely far: they do not
     say that a point is in the open.
     """
-    background = _border((BACKGROUND_Z,) * 4)
+    background = _border((BACKGROUND_Z, BACKGROUND_Z, BACKGROUND_Z, BACKGROUND_Z))
     unknown = _border((np.inf, np.inf, BACKGROUND_Z, BACKGROUND_Z))
     return {
         **dict.fromkeys(("viewZ", "layersZ"), background),

@@ -2,7 +2,9 @@
 // Ritschel, Grosch and Seidel 2009, section 3:
 //   L_ind(P) = Σ ρ/π L_pixel (1 - V(ω_i)) A_s cosθ_s cosθ_r / d_i²,  A_s = π r_max² / N
 // d is clamped from below; the paper clamps to 1, we to `distance_clamp` in scene units. ρ/π waits for the lighting.
-// Back-facing senders, and those below the receiver's horizon, give nothing.
+// With `patches` off, a sender fills its direction's share of the hemisphere instead, π/N over the density cosθ/π:
+//   L_ind(P) = Σ ρ/π L_pixel (1 - V(ω_i)) π/N,
+// which is what a ray tracer would do, and has no singularity. Back-facing senders, and those below the receiver's horizon, give nothing.
 //
 // Inputs:  viewZ, viewNormal; sender, the direct and ambient light that leaves each pixel (RGB radiance).
 // Output:  bounce: rgb the irradiance from the senders.
@@ -13,6 +15,7 @@
 
 const int directions;
 const int steps;
+const bool patches;
 
 uniform float radius;          // scene units
 uniform float bias;            // radii
@@ -55,8 +58,9 @@ void main() {
         vec3 towards = toSender * inversesqrt(max(dot(toSender, toSender), 1e-20));
         float cosReceiver = max(dot(normal, towards), 0.0);
         float cosSender = max(dot(occluderNormal(first), -towards), 0.0);
-        sum += occluderRadiance(first) * (cosReceiver * cosSender / squaredDistance);
+        float share = cosSender > 0.0 ? 1.0 : 0.0;
+        if (patches) share = radius * radius * cosReceiver * cosSender / squaredDistance;
+        sum += occluderRadiance(first) * share;
     }
-    float patchArea = bleeding * PI * radius * radius / float(directions);
-    bounce = vec4(patchArea * sum, 1.0);
+    bounce = vec4(bleeding * PI / float(directions) * sum, 1.0);  // A_s = π r²/N: its r² is in the share
 }

@@ -56,8 +56,9 @@ class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
-    format), `parts` (name: buffer and channel, for quantities that share a texture). A module gives `visibility`, or
-    `irradiance`, the environment's with occlusion, which the lighting reflects in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    format), `parts` (name: buffer and channel, for quantities that share a texture). A module gives `visibility`, and
+    may give `irradiance`, the environment's with occlusion, which the lighting reflects in place of its own.
+    A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
     """
 
     name: ClassVar[str] = ""
@@ -93,7 +94,7 @@ class Module(Parameters):
         return Estimate(self.passes(), self.outputs)
 
     def bounce(self) -> Estimate | None:
-        """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance. None for nothing."""
+        """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance; or nothing."""
         return None
 
     def environment_blur(self) -> float | None:

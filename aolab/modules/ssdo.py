@@ -1,6 +1,6 @@
 """Screen-space directional occlusion: light from the open directions, and one bounce from the blocked ones."""
 
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -22,19 +22,22 @@ class SSDO(Module):
     title = "Screen-space directional occlusion"
     paper = "Ritschel, Grosch and Seidel 2009, Approximating Dynamic Global Illumination in Image Space"
     shader = "ssdo.frag"
-    outputs = {"irradiance": "RGBA16F"}
-    parts = {"visibility": ("irradiance", 3)}
+    outputs: ClassVar = {"irradiance": "RGBA16F"}
+    parts: ClassVar = {"visibility": ("irradiance", 3)}
 
     radius: Radius = "auto"
-    directions: Directions = 16
-    steps: Steps = 2
+    directions: Directions = 8
+    steps: Steps = 4
     bias: Bias = 0.01
     falloff: Falloff = 0.3
-    thickness: Thickness = 0.8
+    thickness: Thickness = 0.9
     bounces: Literal[0, 1] = parameter(0, "Bounces of indirect light: none, or one from the occluders on the screen.")
     bleeding: float = parameter(1.0, "Strength of the bounce: scales the area of a sender, π radius² / N.", ge=0, le=16)
     distance_clamp: Annotated[float, Field(gt=0)] | Literal["auto"] = parameter(
         AUTO, "Least distance of a sender; auto is the radius of its patch, radius / √N.", unit="scene units"
+    )
+    senders: Literal["patches", "rays"] = parameter(
+        "patches", "What an occluder sends: a patch of area A_s at its distance, or the light of its direction's share."
     )
     light_steps: int = parameter(
         0, "Samples towards each light, on the screen; 0 leaves it to shadow maps.", ge=0, le=64
@@ -52,7 +55,8 @@ class SSDO(Module):
     def bounce(self) -> Estimate | None:
         if not self.bounces:
             return None
-        return Estimate([Pass("ssdo bounce", "ssdo.bounce.frag", {"bounce": "RGBA16F"})], {"bounce": "RGBA16F"})
+        outputs, constants = {"bounce": "RGBA16F"}, {"patches": self.senders == "patches"}
+        return Estimate([Pass("ssdo bounce", "ssdo.bounce.frag", outputs, constants)], outputs)
 
     def resolved(self, scene: Scene) -> "SSDO":
         module = super().resolved(scene)

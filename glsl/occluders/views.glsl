@@ -2,7 +2,7 @@
 // Cameras"). So hidden, grazing and off-screen surfaces take part.
 // The paper does not say what to do where views disagree. What one camera sees is in the open, so a point is blocked if it
 // lies behind the surface in every view that has it in its picture; of these surfaces the nearest is the occluder.
-// With peeled layers in each view, a point inside a solid in any of them is blocked.
+// With peeled layers in each view, it must besides be inside a solid in one of them, in place of within the thickness.
 
 #include "lib/solids.glsl"
 
@@ -72,7 +72,8 @@ bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
     }
     occluder.viewPos = thereOfNearest * (nearestZ / thereOfNearest.z);
     if (occluder.view > 0) occluder.viewPos = (camera_from_view[occluder.view - 1] * vec4(occluder.viewPos, 1.0)).xyz;
-    return insideSolid || abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;
+    if (view_layers > 1) return insideSolid && depthBehind > 0.0;
+    return abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;
 }
 
 // The occluder's unit normal, in the camera's view space.
