@@ -1,7 +1,7 @@
 from .api import render as render
 from .camera import Camera as Camera
-from .environment import Environment as Environment
 from .decomposition import explain as explain
+from .environment import Environment as Environment
 from .errors import ContextError as ContextError
 from .errors import Error as Error
 from .errors import FileError as FileError
@@ -24,6 +24,7 @@ from .mesh import Material as Material
 from .mesh import Mesh as Mesh
 from .mesh import Texture as Texture
 from .modules import SSAO as SSAO
+from .modules import SSDO as SSDO
 from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .parameters import parameter as parameter

@@ -132,7 +132,7 @@ class Environment:
         The bands left out are 1 % on average for natural light (Ramamoorthi & Hanrahan 2001, abstract), and at any
         normal at most 3/32 of ∫ L dω: a point light in the surface's plane, which has 1/4 - 5/32 instead of 0.
         """
-        values, directions, solid_angles = _averaged(self.radiance)
+        values, directions, solid_angles = averaged(self.radiance)
         return irradiance(project(values.reshape(-1, 3), directions.reshape(-1, 3), solid_angles.ravel(), bands=3))
 
     def irradiance(self, normals: np.ndarray) -> np.ndarray:
@@ -157,11 +157,16 @@ def _cells(row_edges: np.ndarray, column_edges: np.ndarray) -> tuple[np.ndarray,
     return np.stack(parts, axis=-1), solid_angles
 
 
-def _averaged(radiance: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """At most `PROJECTION_CELLS` means over solid angle of `radiance`, with their `_cells`."""
+def averaged(
+    radiance: np.ndarray, most: tuple[int, int] = PROJECTION_CELLS
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Means over solid angle of an equirectangular map: values (h, w, 3), directions (h, w, 3), solid angles (h, w).
+
+    There are at most `most` rows and columns.
+    """
     edges = [
         np.linspace(0, size, min(size, cells) + 1).astype(int)
-        for size, cells in zip(radiance.shape[:2], PROJECTION_CELLS, strict=True)
+        for size, cells in zip(radiance.shape[:2], most, strict=True)
     ]
     directions, solid_angles = _cells(*edges)
     if solid_angles.shape == radiance.shape[:2]:

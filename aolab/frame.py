@@ -16,7 +16,7 @@ from .gl.texture import Pool, read
 from .metadata import save_png
 
 # how many channels of a texture mean something; the others are padding
-_CHANNELS = {"viewNormal": 3, "albedo": 3, "direct": 3, "ambient": 3, "indirect": 3, "radiance": 3, "image": 3}
+_RGB = ("viewNormal", "albedo", "direct", "ambient", "indirect", "irradiance", "bounce", "radiance", "image")
 # scalars that have no value where nothing was drawn
 _NAN_IN_BACKGROUND = ("visibility",)
 
@@ -36,12 +36,13 @@ class Frame:
     info: dict[str, Any]
     frame_ms: float = 0.0
     notes: list[str] = field(default_factory=list)
+    parts: Mapping[str, tuple[str, int]] = field(default_factory=dict)  # name: texture and channel
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def buffers(self) -> list[str]:
         """The names that `frame[name]` knows."""
-        return sorted(self.textures)
+        return sorted({*self.textures, *self.parts})
 
     @property
     def size(self) -> tuple[int, int]:
@@ -49,11 +50,16 @@ class Frame:
         return tuple(self.info["size"])  # type: ignore[return-value]
 
     def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self.textures:
-            raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.textures)}")
+        if name not in self.buffers:
+            raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.buffers)}")
         if name not in self._arrays:
-            source = self.textures[name]
-            pixels = source if isinstance(source, np.ndarray) else read(source, _CHANNELS.get(name))
+            whole, channel = self.parts.get(name, (name, None))
+            source = self.textures[whole]
+            pixels = source if isinstance(source, np.ndarray) else read(source)
+            if channel is not None:
+                pixels = pixels[..., channel]
+            elif name.removesuffix("_raw") in _RGB:
+                pixels = np.ascontiguousarray(pixels[..., :3])
             if name.removesuffix("_raw") in _NAN_IN_BACKGROUND and pixels.shape == self["viewZ"].shape:
                 pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
             self._arrays[name] = pixels

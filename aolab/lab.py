@@ -6,10 +6,11 @@ from dataclasses import asdict
 from time import perf_counter
 from typing import Any
 
-from . import filters, lighting, surfaces
+from . import lighting, surfaces
 from .camera import Camera
 from .draw import Buffers, Painter
 from .errors import Notice, ParameterError
+from .estimate import Run, estimate
 from .frame import Frame, lend
 from .gl import context
 from .gl.geometry import Geometry
@@ -17,6 +18,7 @@ from .gl.program import Programs
 from .gl.texture import Pool, Size, check_size, refuse_exhaustion
 from .lighting import Display, EnvironmentMaps, ToneMap
 from .modules import MODULES, Module, find
+from .occluders import KINDS, Stage
 from .scene import Scene
 from .shadows import ShadowMaps, draw_shadows
 from .version import __version__
@@ -37,7 +39,7 @@ class Lab:
         context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
-        self._samplers = {"viewZ": surfaces.border_sampler()}
+        self._samplers = surfaces.border_samplers()
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
@@ -114,8 +116,15 @@ class Lab:
     ) -> Frame:
         shadows = self._shadow_maps(painter, scene)
         buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
-        buffers |= self._estimate(painter, module, buffers, view, seed, frames)
-        buffers |= lighting.light(painter, buffers, scene, view, shadows)
+        stage = Stage(painter, self._geometry, self._depth, scene, view)
+        occluders = KINDS[module.occluders](stage, module, buffers)
+        run = Run(painter, module, occluders, self._module_inputs(scene, module), view, range(seed, seed + frames))
+        buffers |= estimate(run, module.estimate(), buffers)
+        buffers |= lighting.light(painter, buffers, scene, view, shadows, module, occluders)
+        if bounce := module.bounce():
+            buffers |= lighting.senders(painter, buffers, scene, view, shadows, occluders)
+            buffers |= estimate(run, bounce, buffers)
+            buffers |= lighting.reflect(painter, buffers, "bounce", "indirect", view)
         buffers |= lighting.compose(painter, buffers, self._environments, scene, view, display)
         refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
 
@@ -132,7 +141,9 @@ class Lab:
             **asdict(display),
             "triangles": scene.triangles,
         }
-        return lend(Frame(buffers, painter.timer.result(), info), self._pool, painter.lent)
+        raw = {f"{name}_raw": (f"{whole}_raw", channel) for name, (whole, channel) in module.parts.items()}
+        frame = Frame(buffers, painter.timer.result(), info, parts={**module.parts, **raw})
+        return lend(frame, self._pool, painter.lent)
 
     def _shadow_maps(self, painter: Painter, scene: Scene) -> ShadowMaps:
         """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
@@ -141,45 +152,13 @@ class Lab:
             self._shadows = key, draw_shadows(painter, self._geometry, scene)
         return self._shadows[1]
 
-    def _estimate(
-        self, painter: Painter, module: Module, large: Buffers, view: View, seed: int, frames: int
-    ) -> Buffers:
-        """The module's passes, averaged, filtered, and brought to full size; `NAME_raw` is the unfiltered estimate."""
-        small, small_view = large, view
-        if module.scale < 1:
-            small_view = view.scaled(module.scale)
-            small = surfaces.shrink(painter, large, view, small_view)
-        if frames == 1:
-            formats = dict(module.outputs)
-            raw = self._passes(painter, module, small, small_view, seed)
-        else:
-            formats = {name: filters.single_precision(format) for name, format in module.outputs.items()}
-            raw = self._accumulated(painter, module, formats, small, small_view, range(seed, seed + frames))
-        estimate = filters.apply(painter, module.filter, raw, formats, small, small_view)
-        if module.scale < 1:
-            estimate = filters.upsample(painter, estimate, formats, small, small_view, large, view)
-        return {**{f"{name}_raw": texture for name, texture in raw.items()}, **estimate}
-
-    def _accumulated(
-        self, painter: Painter, module: Module, formats: dict[str, str], inputs: Buffers, view: View, seeds: range
-    ) -> Buffers:
-        means = {name: painter.take(view.size, format) for name, format in formats.items()}
-        painter.pool.framebuffer(list(means.values())).clear()
-        for seed in seeds:
-            one = self._passes(painter, module, inputs, view, seed)
-            filters.accumulate(painter, one, means, len(seeds), view)
-            painter.give_back(one)
-        return means
-
-    def _passes(self, painter: Painter, module: Module, inputs: Buffers, view: View, seed: int) -> Buffers:
-        values = module.model_dump()
-        constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
-        uniforms = {**view.uniforms, **values, **module.samples(seed)}
-        aliases = {"occluders.glsl": f"occluders/{module.occluders}.glsl"}
-        made: Buffers = {}
-        for step in module.passes():
-            made |= painter.run(step, {**inputs, **made}, uniforms, view.size, constants, aliases)
-        return {name: made[name] for name in module.outputs}
+    def _module_inputs(self, scene: Scene, module: Module) -> Buffers:
+        """Textures beside the surfaces that the module asks for."""
+        blur = module.environment_blur()
+        if blur is None:
+            return {}
+        assert scene.environment is not None  # Scene fills it in
+        return {"prefiltered_environment": self._environments.prefiltered(scene.environment, blur)}
 
 
 def _as_scene(scene: Any) -> Scene:

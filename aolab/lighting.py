@@ -2,7 +2,7 @@
 
 import weakref
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import moderngl
 import numpy as np
@@ -10,9 +10,12 @@ import numpy as np
 from .draw import Buffers, Painter
 from .environment import HALF_MAX, Environment
 from .gl import context
-from .gl.texture import refuse_exhaustion
+from .gl.texture import make, refuse_exhaustion
 from .lights import DirectionalLight, PointLight, SpotLight
+from .modules import Module
+from .occluders import Occluders
 from .passes import Pass
+from .prefiltered import prefiltered
 from .scene import Scene
 from .shadows import ShadowMaps
 from .view import View, matrix_bytes
@@ -21,6 +24,7 @@ ToneMap = Literal["filmic", "linear"]
 
 _DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"})
 _AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
+_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
@@ -31,6 +35,9 @@ class EnvironmentMaps:
 
     def __init__(self) -> None:
         self._textures: weakref.WeakKeyDictionary[Environment, moderngl.Texture] = weakref.WeakKeyDictionary()
+        self._prefiltered: weakref.WeakKeyDictionary[Environment, tuple[float, moderngl.Texture]] = (
+            weakref.WeakKeyDictionary()
+        )
 
     def of(self, environment: Environment) -> moderngl.Texture:
         """RGB, half float, first row up (+y): as glsl/lib/environment.glsl reads it."""
@@ -44,6 +51,15 @@ class EnvironmentMaps:
             self._textures[environment] = texture
         return self._textures[environment]
 
+    def prefiltered(self, environment: Environment, solid_angle: float) -> moderngl.Texture:
+        """An octahedral map, RGBA float, blurred to `solid_angle` steradians; the last blur asked for is kept."""
+        kept = self._prefiltered.get(environment)
+        if kept is None or kept[0] != solid_angle:
+            pixels = prefiltered(environment, solid_angle)
+            padded = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
+            kept = self._prefiltered[environment] = solid_angle, make(pixels.shape[1::-1], "RGBA32F", padded.tobytes())
+        return kept[1]
+
 
 @dataclass(frozen=True)
 class Display:
@@ -53,18 +69,73 @@ class Display:
     tone_map: ToneMap = "filmic"
 
 
-def light(painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps) -> Buffers:
-    """`direct` and `ambient` radiance; a module that gives its own `ambient` is left alone."""
-    inputs = {**buffers, "shadow_atlas": shadows.atlas}
+def light(
+    painter: Painter,
+    buffers: Buffers,
+    scene: Scene,
+    view: View,
+    shadows: ShadowMaps,
+    module: Module,
+    occluders: Occluders,
+) -> Buffers:
+    """`direct` and `ambient` radiance; a module that gives `irradiance` has it reflected, in place of the SH's."""
+    lit = _direct(painter, buffers, scene, view, shadows, module, occluders)
+    if "irradiance" in buffers:
+        return lit | reflect(painter, buffers, "irradiance", "ambient", view)
+    return lit | _ambient(painter, buffers, scene, view)
+
+
+def _direct(
+    painter: Painter,
+    buffers: Buffers,
+    scene: Scene,
+    view: View,
+    shadows: ShadowMaps,
+    module: Module | None = None,
+    occluders: Occluders | None = None,
+) -> Buffers:
+    """`direct`: the lights through their shadow maps and, if the module has `light_steps`, past what is on screen."""
     count = len(scene.lights)
-    constants = {"lights": count, "light_slots": max(1, count), "shadow_slots": len(shadows.matrices)}
-    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows)}
-    lit = painter.run(_DIRECT, inputs, uniforms, view.size, constants)
-    if "ambient" not in buffers:
-        assert scene.environment is not None  # Scene fills it in
-        coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
-        lit |= painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
-    return lit
+    values: dict[str, Any] = {"light_steps": 0, "radius": 0.0, "bias": 0.0, "thickness": 0.0}
+    if module is not None:
+        values |= module.model_dump()
+    constants = {
+        **{key: value for key, value in values.items() if isinstance(value, int)},
+        "lights": count,
+        "light_slots": max(1, count),
+        "shadow_slots": len(shadows.matrices),
+    }
+    if not occluders or not values["light_steps"]:
+        occluders = Occluders("depth")  # the shader asks nothing of it
+    inputs = {**buffers, **occluders.inputs, "shadow_atlas": shadows.atlas}
+    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values, **occluders.uniforms}
+    aliases = {"occluders.glsl": f"occluders/{occluders.kind}.glsl"}
+    return painter.run(_DIRECT, inputs, uniforms, view.size, constants, aliases)
+
+
+def _ambient(painter: Painter, buffers: Buffers, scene: Scene, view: View) -> Buffers:
+    assert scene.environment is not None  # Scene fills it in
+    coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
+    return painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
+
+
+def senders(
+    painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps, occluders: Occluders
+) -> Buffers:
+    """`sender`: what leaves each surface before any bounce, direct + ambient light; hidden ones join the occluders.
+
+    Of a hidden surface only the direct light is known: its occlusion was not estimated.
+    """
+    for suffix, hidden in occluders.hidden.items():
+        lit = _direct(painter, hidden.surfaces, scene, hidden.view, shadows)
+        occluders.inputs[f"sender{suffix}"] = lit["direct"]
+    return painter.run(_SENDER, buffers, view.uniforms, view.size)
+
+
+def reflect(painter: Painter, buffers: Buffers, irradiance: str, radiance: str, view: View) -> Buffers:
+    """The buffer `irradiance`, reflected diffusely, as `radiance`."""
+    step = Pass(radiance, "pipeline/reflect.frag", {radiance: "RGBA16F"})
+    return painter.run(step, {**buffers, "source": buffers[irradiance]}, view.uniforms, view.size)
 
 
 def compose(

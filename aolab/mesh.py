@@ -2,6 +2,7 @@
 
 import warnings
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -107,6 +108,15 @@ class Mesh:
                 array = np.ascontiguousarray(array)
                 array.flags.writeable = False
             object.__setattr__(self, key, array)
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether every edge joins two triangles, vertices at one place counted as one: the mesh bounds a solid."""
+        _, point = np.unique(self.vertices, axis=0, return_inverse=True)
+        corners = point.reshape(-1)[self.faces]
+        edges = np.sort(np.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]]), axis=1)
+        _, uses = np.unique(edges[:, 0].astype(np.int64) * len(self.vertices) + edges[:, 1], return_counts=True)
+        return bool((uses % 2 == 0).all())
 
     @staticmethod
     def _refuse_nonfinite(array: np.ndarray, what: str) -> None:

@@ -1,9 +1,17 @@
 """What a pass is: one shader over the whole screen, and the textures it fills."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from .gl.source import Constant
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """Passes that come to noisy buffers, `outputs` (name: format), which are then filtered and brought to full size."""
+
+    passes: Sequence["Pass"]
+    outputs: Mapping[str, str]
 
 
 @dataclass(frozen=True)

@@ -21,26 +21,30 @@ class DepthTargets:
     """Depth buffers by size: scratch space that no frame keeps."""
 
     def __init__(self) -> None:
-        self._depth: tuple[tuple[int, int], moderngl.Renderbuffer] | None = None
+        self._depth: dict[tuple[int, int], moderngl.Renderbuffer] = {}
 
     def of(self, size: tuple[int, int]) -> moderngl.Renderbuffer:
-        if self._depth is None or self._depth[0] != size:
+        if size not in self._depth:
+            if len(self._depth) >= 4:  # the image, and the further views; older ones are of sizes left behind
+                self._depth.clear()
             depth = context.get().depth_renderbuffer(size)
             attach([], depth)  # refuses one that the driver had no memory for
-            self._depth = size, depth
-        return self._depth[1]
+            self._depth[size] = depth
+        return self._depth[size]
 
 
-def g_buffer(painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View) -> Buffers:
-    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F)."""
+def g_buffer(
+    painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View, name: str = "g_buffer"
+) -> Buffers:
+    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F); `name` is for the timings."""
     gl = context.get()
     buffers = {name: painter.take(view.size, format) for name, format in G_BUFFER.items()}
-    program = painter.programs.get("pipeline/gbuffer.frag", vertex="pipeline/gbuffer.vert")
+    program = painter.programs.get("pipeline/gbuffer.frag", {"peel": False}, vertex="pipeline/gbuffer.vert")
     # set a mesh at a time, by Geometry.draw
     program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
     painter.bind_unit(program, "base_texture", 0)
     framebuffer = painter.pool.framebuffer(list(buffers.values()), depth.of(view.size))
-    with painter.timer.measure("g_buffer"):
+    with painter.timer.measure(name):
         framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
         painter.pool.framebuffer([buffers["viewZ"]]).clear(red=BACKGROUND_Z)
         framebuffer.use()
@@ -56,8 +60,21 @@ def shrink(painter: Painter, buffers: Buffers, view: View, small: View) -> Buffe
     return painter.run(_SHRINK, buffers, uniforms, small.size)
 
 
-def border_sampler() -> moderngl.Sampler:
-    """Outside of the screen nothing is known, and nothing blocks: viewZ is the background's there."""
+def border_samplers() -> dict[str, moderngl.Sampler]:
+    """For depths that are asked for off the screen, where nothing is known.
+
+    The camera's are the background's there: nothing blocks. Those of further views are infinitely far: they do not
+    say that a point is in the open.
+    """
+    background = _border((BACKGROUND_Z, BACKGROUND_Z, BACKGROUND_Z, BACKGROUND_Z))
+    unknown = _border((np.inf, np.inf, BACKGROUND_Z, BACKGROUND_Z))
+    return {
+        **dict.fromkeys(("viewZ", "layersZ"), background),
+        **dict.fromkeys(("viewZ1", "viewZ2", "viewZ3", "viewZ4"), unknown),
+    }
+
+
+def _border(color: tuple[float, float, float, float]) -> moderngl.Sampler:
     sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=(moderngl.NEAREST, moderngl.NEAREST))
-    sampler.border_color = (BACKGROUND_Z, 0.0, 0.0, 0.0)
+    sampler.border_color = color
     return sampler

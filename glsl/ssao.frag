@@ -18,7 +18,6 @@ uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform float power;
 uniform vec4 kernel[directions];
-uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
 
 out float visibility;
@@ -41,9 +40,9 @@ void main() {
         float offset = interleavedOffset(kernel[i].w, set);
         bool blocked = false;
         for (int j = 0; j < steps; ++j) {
-            vec3 occluderPos;
+            Occluder occluder;
             vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
-            blocked = isBlocked(samplePos, thickness * radius, occluderPos) || blocked;
+            blocked = isBlocked(samplePos, thickness * radius, occluder) || blocked;
         }
         blockedDirections += blocked ? 1.0 : 0.0;
     }

@@ -3,7 +3,8 @@
 from .base import Module, find
 from .none import Unoccluded
 from .ssao import SSAO
+from .ssdo import SSDO
 
-MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO)}
+MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO)}
 
-__all__ = ["MODULES", "SSAO", "Module", "Unoccluded", "find"]
+__all__ = ["MODULES", "SSAO", "SSDO", "Module", "Unoccluded", "find"]

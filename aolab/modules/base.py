@@ -7,7 +7,7 @@ from pydantic import Field
 
 from ..errors import ParameterError, suggestion
 from ..parameters import AUTO, Parameters, parameter
-from ..passes import Pass
+from ..passes import Estimate, Pass
 from ..scene import Scene
 
 # Common parameters: one meaning everywhere (see "The face of the package" in the design)
@@ -56,7 +56,9 @@ class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
-    format). A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    format), `parts` (name: buffer and channel, for quantities that share a texture). A module gives `visibility`, and
+    may give `irradiance`, the environment's with occlusion, which the lighting reflects in place of its own.
+    A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
     """
 
     name: ClassVar[str] = ""
@@ -64,8 +66,15 @@ class Module(Parameters):
     paper: ClassVar[str] = ""
     shader: ClassVar[str] = ""
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
+    parts: ClassVar[Mapping[str, tuple[str, int]]] = {}
 
-    occluders: Literal["depth"] = parameter("depth", "What is tested for blocking: depth is the camera's one layer.")
+    occluders: Literal["depth", "layers", "views"] = parameter(
+        "depth", "What is tested for blocking: the camera's depth, `layers` of it, peeled, or further `views`."
+    )
+    layers: int = parameter(4, "Depth layers, where those are the occluders: two make a solid.", ge=2, le=4)
+    views: int = parameter(4, "Cameras beside the camera, where those are the occluders.", ge=1, le=4)
+    view_scale: float = parameter(0.5, "Resolution of the further views, as a share of the image's.", ge=0.125, le=1)
+    view_layers: int = parameter(1, "Peeled layers of each further view.", ge=1, le=4)
     filter: Literal["none", "box4", "bilateral"] = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
     )
@@ -79,6 +88,18 @@ class Module(Parameters):
     def passes(self) -> list[Pass]:
         """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
         return [Pass(self.name or type(self).__name__, self.shader, self.outputs)]
+
+    def estimate(self) -> Estimate:
+        """What is computed from the surfaces, before any lighting."""
+        return Estimate(self.passes(), self.outputs)
+
+    def bounce(self) -> Estimate | None:
+        """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance; or nothing."""
+        return None
+
+    def environment_blur(self) -> float | None:
+        """Solid angle, in steradians, to which `prefiltered_environment` is blurred; None: it is not read."""
+        return None
 
     def samples(self, seed: int) -> dict[str, bytes]:
         """Uniform arrays that depend on the seed; another seed is another sample set."""

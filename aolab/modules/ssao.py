@@ -18,11 +18,11 @@ class SSAO(Module):
     shader = "ssao.frag"
 
     radius: Radius = "auto"
-    directions: Directions = 16
-    steps: Steps = 2
+    directions: Directions = 8
+    steps: Steps = 4
     bias: Bias = 0.01
     falloff: Falloff = 0.3
-    thickness: Thickness = 0.8
+    thickness: Thickness = 0.9
     power: float = parameter(1.0, "Contrast: visibility is raised to it; 1 is the physical value.", gt=0, le=8)
 
     def samples(self, seed: int) -> dict[str, bytes]:

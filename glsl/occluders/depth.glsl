@@ -1,17 +1,36 @@
-// Occluders: one depth layer, the camera's. Every occluder kind has this one function.
+// Occluders: one depth layer, the camera's. Every kind of occluders has these three functions.
 // "A sampling point is below the surface if its distance to the viewer decreases by projecting it onto the surface"
 // (SSDO, Ritschel et al. 2009, section 3).
 
-uniform sampler2D viewZ;          // R32F; its border says -infinity: nothing is known off the screen, and nothing blocks
-uniform vec2 texel_size;          // 1 / resolution
+uniform sampler2D viewZ;       // R32F; its border says -infinity: nothing is known off the screen, and nothing blocks
+uniform sampler2D viewNormal;
+uniform sampler2D sender;      // RGB radiance that leaves each surface
+uniform vec2 texel_size;       // 1 / resolution
 uniform vec4 pixel_from_ray;
+
+// What blocks: where, in view space, and where its properties are stored.
+struct Occluder {
+    vec3 viewPos;
+    vec2 uv;
+};
 
 // Is the view-space point `samplePos` blocked, and by what? What is seen there has no known back: it is taken to be
 // `thickness` deep, so that a far foreground throws no halo (Umenhoffer et al. 2009, section 4.3: R > z - z* > 0).
-// `occluderPos` is where the eye's ray to the point meets the surface.
-bool isBlocked(vec3 samplePos, float thickness, out vec3 occluderPos) {
-    float surfaceZ = texture(viewZ, pixelAt(samplePos, pixel_from_ray) * texel_size).r;
-    occluderPos = samplePos * (surfaceZ / samplePos.z);
+// The occluder is where the eye's ray to the point meets the surface.
+bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
+    occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
+    float surfaceZ = texture(viewZ, occluder.uv).r;
+    occluder.viewPos = samplePos * (surfaceZ / samplePos.z);
     float depthBehind = surfaceZ - samplePos.z;
     return abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;  // 0 < depthBehind < thickness in one comparison
+}
+
+// The occluder's unit normal, view space.
+vec3 occluderNormal(Occluder occluder) {
+    return texture(viewNormal, occluder.uv).xyz;
+}
+
+// The light that leaves the occluder.
+vec3 occluderRadiance(Occluder occluder) {
+    return texture(sender, occluder.uv).rgb;
 }

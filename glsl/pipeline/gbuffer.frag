@@ -3,7 +3,10 @@
 //          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w unused)
 //          albedo         linear diffuse albedo (RGBA16F, w unused)
 
+const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
+
 uniform sampler2D base_texture;
+uniform sampler2D nearerZ;
 uniform vec4 base_color;
 uniform float alpha_cutoff;
 
@@ -19,11 +22,12 @@ layout(location = 2) out vec4 albedo;
 void main() {
     vec4 base = base_color * color * texture(base_texture, uv);
     if (base.a < alpha_cutoff) discard;
+    if (peel && viewPos.z >= texelFetch(nearerZ, ivec2(gl_FragCoord.xy), 0).r) discard;
     // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
     // derivatives, which at a horizon reach over to what lies behind the eye
     vec3 faceNormal = cross(dFdx(viewPos), dFdy(viewPos));
     faceNormal = faceforward(faceNormal, viewPos, faceNormal);
     surfaceViewZ = viewPos.z;
-    surfaceNormal = vec4(normalize(dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
+    surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     albedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 }
