@@ -1,7 +1,7 @@
 """Triangles and what they are made of, checked once, on the way in."""
 
 import warnings
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -98,6 +98,9 @@ class Mesh:
             if len(array) != len(vertices):
                 raise SceneError(f"{what}: {len(array)} {key} for {len(vertices)} vertices")
             self._refuse_nonfinite(array, f"{what}: {key} of vertex")
+        if self.material.texture is not None and attributes["uv"] is None:
+            warnings.warn(f"{what}: a texture but no uv; drawn in its base colour", Notice, stacklevel=3)
+            object.__setattr__(self, "material", replace(self.material, texture=None))
         if attributes["normals"] is None or not (np.abs(attributes["normals"]).max(axis=1) > 0).all():
             vertices, faces, source, attributes["normals"] = smooth_normals(vertices, faces, self.crease)
             for key in ("uv", "colors"):

@@ -122,3 +122,11 @@ def test_material_colours(color):
 def test_texture_pixels(pixels):
     with pytest.raises(SceneError, match="texture 'bark': pixels are"):
         Texture(pixels, "bark")
+
+
+def test_a_texture_without_uv_is_left_out_and_said():
+    texture = Texture(np.full((2, 2, 4), 255, np.uint8), "checks")
+    with pytest.warns(Notice, match="a texture but no uv"):
+        mesh = Mesh(np.eye(3), [[0, 1, 2]], material=Material((0.2, 0.4, 0.6), texture))
+    assert mesh.material.texture is None
+    assert mesh.material.base_color == (0.2, 0.4, 0.6)

@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import asdict
 from time import perf_counter
-from typing import Any, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
 
@@ -42,11 +42,11 @@ def reference(
     radius: float | None = None,
     falloff: float = 0.0,
     like: str | Module | type[Module] | None = None,
-    buffers: Iterable[str] = DEFAULT_BUFFERS,
+    buffers: Iterable[str] | None = None,
     measure: Measure = "sqrt",
     bounces: int = 8,
     seed: int = 0,
-    engine: Engine = "auto",
+    engine: Engine | Literal["mitsuba"] = "auto",
     cache: bool = True,
     progress: bool | None = None,
 ) -> Frame:
@@ -74,12 +74,22 @@ def reference(
       reflections (what is still enclosed then is black), where a segment longer than the radius sees the sky;
     - `direct`: the lights, with hard shadows; `radiance` and `image`: direct + ambient + indirect, as rendered.
 
-    `engine`: embree, numpy (tiny scenes), or auto. Results are kept on disk (`AOLAB_CACHE`, else the platform's cache
-    folder) by their content, unless `cache` is False. `progress` shows a bar; None shows it on a terminal.
+    `engine`: embree, numpy (tiny scenes), or auto. `mitsuba`, the second opinion, traces whole paths in a process of
+    its own: it has no radius, and gives direct, ambient, indirect, radiance and image.
+    Results are kept on disk (`AOLAB_CACHE`, else the platform's cache folder) by their content, unless `cache` is
+    False. `progress` shows a bar; None shows it on a terminal.
     Raises `ParameterError`, and what `aolab.load` and `aolab.render` raise.
     """
     start = perf_counter()
     scene = load(scene)
+    if engine == "mitsuba":
+        if radius is not None or falloff or like is not None:
+            raise ParameterError("engine = 'mitsuba' has no radius, falloff or like: it traces whole paths")
+        from .mitsuba import path_traced
+
+        wanted = ("direct", "ambient", "indirect", "radiance", "image") if buffers is None else buffers
+        return path_traced(scene, size=size, camera=camera, samples=rays, seed=seed, buffers=wanted, cache=cache)
+    buffers = DEFAULT_BUFFERS if buffers is None else buffers
     radius, falloff = _reach(scene, radius, falloff, like)
     wanted = _checked(buffers, rays, seed, measure, bounces, radius)
     surfaces = shared_lab().render(scene, "none", size=size, camera=camera)

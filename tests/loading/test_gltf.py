@@ -125,6 +125,7 @@ def test_a_texture_uses_the_uv_set_it_names_and_integers_are_fractions(gltf):
 
 def test_two_materials_share_one_image(gltf):
     gltf.image(bufferView=gltf.view(png((9, 9, 9, 255))))
+    gltf.attribute("TEXCOORD_0", np.zeros((3, 2), np.float32))
     gltf.header["materials"].append({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}})
     gltf.header["meshes"].append({"primitives": [{**gltf.header["meshes"][0]["primitives"][0], "material": 1}]})
     gltf.header["nodes"].append({"mesh": 1})

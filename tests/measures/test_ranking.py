@@ -68,12 +68,12 @@ def test_a_buffer_that_a_module_lacks_is_an_error(boxes):
 
 def test_command_writes_the_sheet_and_prints(tmp_path):
     path = tmp_path / "sheet.png"
-    options = {"scene": "boxes", "modules": "none,ssao?steps=4", "size": "48x32", "rays": 4, "radius": None}
+    options = {"scene": "boxes", "modules": "none,ssao?steps=3", "size": "48x32", "rays": 4, "radius": None}
     text = compare_command(**options, buffer="visibility", output=path, as_json=False)
     assert path.read_bytes().startswith(b"\x89PNG")
     assert [line.split()[0] for line in text.splitlines()[1:]] == ["ssao", "none"]
     read = json.loads(compare_command(**options, buffer="ambient", output=None, as_json=True))
-    assert {entry["label"] for entry in read} == {"ssao steps=4", "none"}
+    assert {entry["label"] for entry in read} == {"ssao steps=3", "none"}
     assert all(entry["buffers"]["ambient"]["all"]["rmse"] > 0 for entry in read)
     assert all(entry["rays"] == 4 and entry["renderer"] for entry in read)
 

@@ -9,6 +9,7 @@ import small_scenes
 import aolab
 from aolab import Module, ParameterError, Pass, parameter
 from aolab.modules.base import Directions, Radius
+from aolab.passes import Estimate
 
 
 class HeightFog(Module):
@@ -87,7 +88,6 @@ def test_it_may_share_the_parts_of_the_built_in_ones(lab, wall):
 const int directions;
 uniform float radius;
 uniform vec4 kernel[directions];
-uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
 out float visibility;
 
@@ -102,9 +102,9 @@ void main() {
     mat3 frame = interleavedFrame(normal, set) * radius;
     float blocked = 0.0;
     for (int i = 0; i < directions; ++i) {
-        vec3 occluderPos;
+        Occluder occluder;
         vec3 samplePos = viewPos + frame * kernel[i].xyz * interleavedOffset(kernel[i].w, set);
-        blocked += float(isBlocked(samplePos, 0.8 * radius, occluderPos));
+        blocked += float(isBlocked(samplePos, 0.8 * radius, occluder));
     }
     visibility = 1.0 - blocked / float(directions);
 }
@@ -114,7 +114,7 @@ void main() {
             return aolab.SSAO(directions=self.directions).samples(seed)
 
     mine = lab.render(wall, MySSAO(radius=1.0))
-    built_in = lab.render(wall, aolab.SSAO(radius=1.0, steps=1))
+    built_in = lab.render(wall, aolab.SSAO(radius=1.0, directions=16, steps=1, thickness=0.8))
     np.testing.assert_allclose(mine["visibility"], built_in["visibility"], atol=1e-3)
     assert np.nanmin(mine["visibility"]) < 0.9
 
@@ -153,20 +153,32 @@ void main() {
     assert {"first", "second"} <= set(frame.timings)
 
 
-def test_a_module_may_give_its_own_ambient_and_indirect_light(lab, boxes):
+def test_a_module_may_give_the_ambient_irradiance_and_a_bounce(lab, boxes):
+    """Both are reflected by the lighting: albedo / π × irradiance."""
+
     class Glow(Module):
-        outputs = {"visibility": "R16F", "ambient": "RGBA16F", "indirect": "RGBA16F"}  # noqa: RUF012
+        outputs = {"visibility": "R16F", "irradiance": "RGBA16F"}  # noqa: RUF012
         shader = """
 layout(location = 0) out float visibility;
-layout(location = 1) out vec4 ambient;
-layout(location = 2) out vec4 indirect;
-void main() { visibility = 1.0; ambient = vec4(0.25, 0.0, 0.0, 1.0); indirect = vec4(0.0, 0.5, 0.0, 1.0); }
+layout(location = 1) out vec4 irradiance;
+void main() { visibility = 0.5; irradiance = vec4(0.25, 0.0, 0.0, 1.0); }
 """
 
-    frame = lab.render(boxes, Glow())
-    np.testing.assert_allclose(
-        frame["radiance"][frame.mask], np.broadcast_to([0.25, 0.5, 0], (frame.mask.sum(), 3)), atol=1e-3
-    )
+        def bounce(self) -> Estimate:
+            text = """
+uniform sampler2D sender;
+out vec4 bounce;
+void main() { bounce = 3.0 * texelFetch(sender, ivec2(gl_FragCoord.xy), 0); }
+"""
+            given = {"bounce": "RGBA16F"}
+            return Estimate([Pass("glow bounce", text, given)], given)
+
+    frame = lab.render(boxes, Glow(filter="none"))
+    ambient = frame["albedo"] / np.pi * (0.25, 0.0, 0.0)
+    np.testing.assert_allclose(frame["ambient"], ambient, atol=1e-3)
+    np.testing.assert_allclose(frame["indirect"], frame["albedo"] / np.pi * 3 * ambient, atol=1e-3)
+    total = frame["direct"] + frame["ambient"] + frame["indirect"]
+    np.testing.assert_allclose(frame["radiance"][frame.mask], total[frame.mask], atol=1e-3)
 
 
 def test_a_shader_file_of_ones_own_is_found_in_the_glsl_folder(shaders, boxes):

@@ -69,7 +69,7 @@ def test_the_walls_formula_is_the_digests_for_an_unlimited_radius():
 @pytest.mark.parametrize("falloff", [0.0, 0.5, 1.0])
 def test_a_floor_in_front_of_a_wall(lab, wall, falloff):
     """One layer is exact here: the camera sees all of the wall within the radius, and the wall is thick without end."""
-    settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "falloff": falloff, "filter": "none"}
+    settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "falloff": falloff, "filter": "none", "directions": 16}
     frame = lab.render(wall, "ssao", size=(96, 72), steps=32, accumulate=16, **settings)
     x, y, z = np.moveaxis(small_scenes.world_positions(frame, wall.camera), -1, 0)
     near = (np.abs(y) < 1e-3) & (np.abs(z) < 0.5) & (x > 0.05) & (x < 1.2)
@@ -83,7 +83,7 @@ def test_a_floor_in_front_of_a_wall(lab, wall, falloff):
 
 def test_twice_the_steps_come_twice_as_close_to_rays(lab, wall):
     """The last of n steps ends half a step short of the radius, on average."""
-    settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "falloff": 0.0, "filter": "none"}
+    settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "falloff": 0.0, "filter": "none", "directions": 16}
     error = {}
     for steps in (1, 2, 4, 8):
         frame = lab.render(wall, "ssao", size=(96, 72), steps=steps, accumulate=8, **settings)
@@ -103,7 +103,7 @@ def test_a_plane_under_a_sphere(lab):
     enter it by the side that the camera sees; only nearer than s = 2 does what is hidden behind it count as solid.
     """
     camera = aolab.Camera((0, 1.0, 4.2), (0, 0.8, 0), fov=75)
-    settings = {"radius": 6.0, "thickness": 1 / 6, "bias": 0.0, "falloff": 0.0, "filter": "none"}
+    settings = {"radius": 6.0, "thickness": 1 / 6, "bias": 0.0, "falloff": 0.0, "filter": "none", "directions": 16}
     scene = small_scenes.ball(1.0, 1.5, camera)
     frame = lab.render(scene, "ssao", size=(80, 60), steps=64, accumulate=24, **settings)
     x, y, z = np.moveaxis(small_scenes.world_positions(frame, camera), -1, 0)
