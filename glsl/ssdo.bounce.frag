@@ -54,12 +54,13 @@ void main() {
         }
         if (!blocked) continue;
         vec3 toSender = first.viewPos - viewPos;
-        float squaredDistance = max(dot(toSender, toSender), distance_clamp * distance_clamp);
-        vec3 towards = toSender * inversesqrt(max(dot(toSender, toSender), 1e-20));
-        float cosReceiver = max(dot(normal, towards), 0.0);
-        float cosSender = max(dot(occluderNormal(first), -towards), 0.0);
-        float share = cosSender > 0.0 ? 1.0 : 0.0;
-        if (patches) share = radius * radius * cosReceiver * cosSender / squaredDistance;
+        float squaredDistance = max(dot(toSender, toSender), 1e-20);
+        float facing = dot(occluderNormal(first), -toSender);  // d cosθ_s
+        float share = facing > 0.0 ? 1.0 : 0.0;
+        if (patches) {
+            float clamped = max(squaredDistance, distance_clamp * distance_clamp);
+            share *= radius * radius * max(dot(normal, toSender), 0.0) * facing / (squaredDistance * clamped);
+        }
         sum += occluderRadiance(first) * share;
     }
     bounce = vec4(bleeding * PI / float(directions) * sum, 1.0);  // A_s = π r²/N: its r² is in the share
