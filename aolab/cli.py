@@ -39,7 +39,8 @@ def main() -> None:
         tell = getattr(error, "format_message", None)
         if debug or not (tell or isinstance(error, Error)):
             raise
-        print(f"aolab: {tell() if tell else error}", file=sys.stderr)
+        lines = (tell() if tell else str(error)).splitlines()
+        print("aolab:", " | ".join(line.strip() for line in lines if line.strip()), file=sys.stderr)
         sys.exit(2)
 
 

@@ -125,8 +125,11 @@ class Job:
 def _check_outputs(output: Path, *others: Path | None) -> None:
     if output.suffix.lower() != ".png":
         raise FileError(f"cannot write {output}: images are written as .png")
-    for path in filter(None, (output, *others)):
+    paths = [path for path in (output, *others) if path is not None]
+    for path in paths:
         check_writable(path)
+    if len({path.resolve() for path in paths}) < len(paths):
+        raise FileError(f"cannot write two things to one file: {', '.join(map(str, paths))}")
 
 
 def _write(frame: Frame, notes: list[str], output: Path, buffers: Path | None, stats: Path | None) -> None:

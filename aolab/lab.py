@@ -30,7 +30,8 @@ DEFAULT_SIZE = (1280, 720)
 class Lab:
     """Renders scenes with modules. One lab for a session is enough; `aolab.render` keeps one of its own.
 
-    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame.
+    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame;
+    one that does not compile raises once, and then the last good program is used until the next edit.
     """
 
     def __init__(self, size: Size = DEFAULT_SIZE, *, watch: bool = False) -> None:
@@ -92,7 +93,7 @@ class Lab:
     ) -> Frame:
         context.collect()
         if self.watch:
-            self.reload()
+            self._programs.reload(only_changed=True, tell_again=False)
         camera = camera or scene.camera
         assert camera is not None  # Scene frames itself
         module = module.resolved(scene)

@@ -1,12 +1,12 @@
-"""Contact sheets: frames side by side, each with its caption."""
+"""Contact sheets: frames side by side, each with its caption; and tables as pictures."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-MARGIN, CAPTION = 8, 26  # pixels
-_PAPER, _INK = (250, 250, 248), (40, 40, 40)
+MARGIN, CAPTION, LINE, CELL = 8, 26, 24, 12  # pixels; CELL: the space between a table's columns, left and right
+_PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
 
 
 def gray(values: np.ndarray) -> np.ndarray:
@@ -15,15 +15,51 @@ def gray(values: np.ndarray) -> np.ndarray:
     return np.repeat((scaled + 0.5).astype(np.uint8)[..., None], 3, axis=2)
 
 
-def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2) -> Image.Image:
-    """Put captioned pictures, each (H, W, 3) uint8 of one size, into rows of `columns`."""
+def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, *, title: str = "") -> Image.Image:
+    """Put captioned pictures, each (H, W, 3) uint8 of one size, into rows of `columns`; `title`, wrapped, goes above."""
     height, width = pictures[0][1].shape[:2]
     rows = -(-len(pictures) // columns)
     cell = width + MARGIN, height + CAPTION + MARGIN
-    sheet = Image.new("RGB", (columns * cell[0] + MARGIN, rows * cell[1] + MARGIN), _PAPER)
-    draw, font = ImageDraw.Draw(sheet), ImageFont.load_default(size=15)
+    font = ImageFont.load_default(size=15)
+    lines = _wrapped(title, columns * cell[0] - MARGIN, font)
+    top = MARGIN + LINE * len(lines)
+    sheet = Image.new("RGB", (columns * cell[0] + MARGIN, rows * cell[1] + top), _PAPER)
+    draw = ImageDraw.Draw(sheet)
+    for number, line in enumerate(lines):
+        draw.text((MARGIN + 2, MARGIN + number * LINE), line, _INK, font=font)
     for index, (caption, picture) in enumerate(pictures):
-        x, y = MARGIN + index % columns * cell[0], MARGIN + index // columns * cell[1]
+        x, y = MARGIN + index % columns * cell[0], top + index // columns * cell[1]
         sheet.paste(Image.fromarray(picture), (x, y))
         draw.text((x + 2, y + height + 4), caption, _INK, font=font)
     return sheet
+
+
+def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
+    """Draw `rows` of as many cells each, the first as a heading, flush right but for the first column."""
+    font = ImageFont.load_default(size=15)
+    widths = [int(max(font.getlength(row[column]) for row in rows)) + 2 * CELL for column in range(len(rows[0]))]
+    lines = _wrapped(title, sum(widths), font)
+    top = MARGIN + LINE * len(lines)
+    picture = Image.new("RGB", (sum(widths) + 2 * MARGIN, top + LINE * len(rows) + MARGIN), _PAPER)
+    draw = ImageDraw.Draw(picture)
+    for number, line in enumerate(lines):
+        draw.text((MARGIN + 2, MARGIN + number * LINE), line, _INK, font=font)
+    for number, row in enumerate(rows):
+        y, right = top + number * LINE, MARGIN
+        for column, (text, width) in enumerate(zip(row, widths, strict=True)):
+            right += width
+            left = right - width + CELL if column == 0 else right - CELL - font.getlength(text)
+            draw.text((left, y + 3), text, _INK, font=font)
+        draw.line((MARGIN, y + LINE, right, y + LINE), _FAINT if number else _INK)
+    return picture
+
+
+def _wrapped(text: str, width: float, font: ImageFont.FreeTypeFont | ImageFont.ImageFont) -> list[str]:
+    lines: list[str] = []
+    for word in text.split():
+        longer = f"{lines[-1]} {word}" if lines else word
+        if lines and font.getlength(longer) <= width:
+            lines[-1] = longer
+        else:
+            lines.append(word)
+    return lines

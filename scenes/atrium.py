@@ -206,6 +206,6 @@ def _floor(length: float, width: float) -> Mesh:
     image[:, joint[: image.shape[1]]] *= 0.7
     rgba = np.dstack([image, np.full(image.shape[:2], 255)]).clip(0, 255).astype(np.uint8)
     flags = Material((0.95, 0.95, 0.95), Texture(rgba, "flags"), name="flags")
-    slab = block((length, 0.3, width), flags, "floor")
+    slab = block((length, 0.3, width), Material(), "floor")
     uv = slab.vertices[:, (0, 2)] / (columns * side, rows * side) + 0.5
     return Mesh(slab.vertices - np.array((0, 0.3, 0)), slab.faces, slab.normals, uv, material=flags, name="floor")

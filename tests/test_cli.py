@@ -213,6 +213,7 @@ REFUSED = {
     "unknown option": (("boxes", "--colour", "red"), r"[Nn]o such option:? '?--colour"),
     "option without its value": (("boxes", "--size"), r"[Oo]ption '?--size'? requires an argument"),
     "seed that is no number": (("boxes", "--seed", "x"), r"Invalid value for '--seed'"),
+    "two files of one name": (("boxes", "-o", "a.png", "--stats", "./a.png"), r"cannot write two things to one file"),
     "two scenes": (("boxes", "cornell"), r"unexpected extra argument.*cornell"),
 }
 
@@ -274,6 +275,7 @@ def test_a_shader_that_does_not_compile_is_an_error_of_the_shell_too(aolab, shad
     done = aolab("render", "boxes", *SMALL, "--module", "none")
     assert done.code == 2
     assert "glsl/none.frag:2: " in done.err
+    assert done.err.count("\n") == 1
     assert "Traceback" not in done.err
 
 

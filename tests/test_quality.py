@@ -12,6 +12,7 @@ from PIL import Image
 import aolab
 from aolab.cli import app
 from aolab.errors import Error, FileError, Notice, ParameterError
+from aolab.modules import MODULES
 from aolab.quality import Curve, curve, pareto_front, quality_command, settings, visibility_error
 from aolab.truth import reference
 
@@ -86,14 +87,14 @@ def test_own_module_is_measured_over_what_it_has(boxes: aolab.Scene):
 
 def test_time_is_that_of_the_passes_that_the_module_adds(measured: Curve):
     by_label = {point.label: point for point in measured.points}
-    assert set(by_label["ssao 16×2 none"].passes) == {"ssao"}
-    assert set(by_label["ssao 16×2 box4"].passes) == {"ssao", "filter visibility"}
-    assert set(by_label["ssao 4×1 box4 at 0.5"].passes) == {
+    assert set(by_label["ssao 8×4 none"].passes) == {"ssao"}
+    assert set(by_label["ssao 8×4 box4"].passes) == {"ssao", "filter visibility"}
+    assert set(by_label["ssao 4×2 box4 at 0.5"].passes) == {
         "shrink", "ssao", "filter visibility", "upsample visibility"
     }  # fmt: skip
     assert set(by_label["none"].passes) == {"none", "filter visibility"}
     # one pass: the median of the sum is the median of the pass
-    alone = by_label["ssao 16×2 none"]
+    alone = by_label["ssao 8×4 none"]
     assert alone.milliseconds == pytest.approx(alone.passes["ssao"])
 
 
@@ -103,7 +104,7 @@ def test_error_is_that_against_the_truth_of_the_same_radius_and_falloff(measured
     frame = aolab.render(boxes, module, size=SIZE)
     difference = (frame["visibility"] - truth["visibility"])[np.isfinite(frame["viewZ"])].astype(np.float64)
     default = next(point for point in measured.points if point.module == "ssao" and point.default)
-    assert default.label == "ssao 16×2 box4"
+    assert default.label == "ssao 8×4 box4"
     assert default.rmse == pytest.approx(np.sqrt(np.mean(difference**2)))
     assert default.bias == pytest.approx(difference.mean())
     # without a radius of its own, `none` is judged by the same truth: all its error is occlusion that it lacks
@@ -154,8 +155,9 @@ def test_command_writes_picture_and_data_beside_it(tmp_path: Path, capsys: pytes
     data = json.loads((tmp_path / "curve.json").read_text())
     assert {"renderer", "machine", "radius", "rays", "truth_standard_error"} <= set(data)
     assert (data["scene"], data["size"], data["frames"]) == ("boxes", list(SIZE), 3)
-    assert len(data["points"]) == 1 + 72
-    for text in (data["renderer"], data["machine"], "ssao 16×2 box4, default"):
+    assert {point["module"] for point in data["points"]} == set(MODULES)
+    assert len(data["points"]) == 1 + 72 * (len(MODULES) - 1)  # `none` has nothing to trade
+    for text in (data["renderer"], data["machine"], "ssao 8×4 box4, default"):
         assert text in printed
 
 

@@ -90,7 +90,7 @@ def test_report_says_when_held_out_scenes_get_worse(tuned: Tuning):
 def test_ranges_come_from_the_parameters_statements():
     assert tunable(aolab.SSAO()) == ["bias", "thickness", "power"]
     assert tunable(aolab.Unoccluded()) == []
-    assert axis(aolab.SSAO(), "thickness") == Axis("thickness", 0.8, 0.8 / 30, 10, log=True)
+    assert axis(aolab.SSAO(), "thickness") == Axis("thickness", 0.9, 0.9 / 30, 10, log=True)
     assert axis(aolab.SSAO(bias=0.0), "bias") == Axis("bias", 0.0, 0, 1)
     assert axis(aolab.SSAO(), "filter").choices == ("none", "box4", "bilateral")
 
@@ -168,7 +168,7 @@ def test_camera_that_finds_no_free_place_is_left_out_and_said(lab: aolab.Lab):
 
 def test_command_writes_a_preset_that_render_takes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     output = tmp_path / "preset.json"
-    app(["tune", "ssao", "--parameters", "thickness,bias", "--set", "steps=4", "--scenes", "boxes", "--test-scenes",
+    app(["tune", "ssao", "--parameters", "thickness,bias", "--set", "steps=3", "--scenes", "boxes", "--test-scenes",
          "cornell", "--trials", "3", "--views", "1", "--size", "64x36", "--rays", "8", "--json", "-o", str(output)],
         standalone_mode=False)  # fmt: skip
     report, preset = json.loads(capsys.readouterr().out), json.loads(output.read_text())
@@ -176,4 +176,4 @@ def test_command_writes_a_preset_that_render_takes(tmp_path: Path, capsys: pytes
     assert set(preset) == {"steps", "thickness", "bias"}
     assert report["training"]["tuned_rmse"] <= report["training"]["rmse"]
     assert [(view["scene"], view["held_out"]) for view in report["views"]] == [("boxes", False), ("cornell", True)]
-    assert aolab.SSAO(**preset).steps == 4
+    assert aolab.SSAO(**preset).steps == 3

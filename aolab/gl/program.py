@@ -87,6 +87,7 @@ class Programs:
         self._declared: dict[tuple[object, ...], frozenset[str]] = {}
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
+        self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
 
     def get(
         self,
@@ -102,10 +103,18 @@ class Programs:
         key = self._key(request)
         return self._programs[key] if key in self._programs else self._keep(_compile(request))
 
-    def reload(self, only_changed: bool = False) -> list[str]:
-        """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay."""
+    def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
+        """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay.
+
+        Without `tell_again`, files that failed are left alone until one of them is written again.
+        """
         stale = {key: program for key, program in self._programs.items() if not only_changed or program.changed()}
+        stamps = {path: _stamp(path) for program in stale.values() for path in program.files}
+        if not tell_again and stamps == self._told:
+            return []
+        self._told = stamps
         fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
+        self._told = {}
         for key in stale:
             del self._programs[key]
         for program in fresh:

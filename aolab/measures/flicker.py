@@ -1,0 +1,78 @@
+"""How much a surface changes from frame to frame while the camera moves: noise that does not stay where it is."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from ..camera import Camera
+from ..errors import ParameterError
+from ..frame import Frame
+from ..view import ray_scale_offset
+
+SAME_SURFACE = 0.01  # share of the distance: the filters' (PLANE_TOLERANCE in glsl/lib/filter.glsl)
+
+
+@dataclass(frozen=True)
+class Flicker:
+    """`mean` and `p99` of |now - before| at the same points of surfaces, in the buffer's unit; `seen`: share of them.
+
+    `seen` counts the surface pixels, of all frames but the first, whose point the frame before saw as well.
+    """
+
+    mean: float
+    p99: float
+    seen: float
+
+
+def flicker(frames: Sequence[Frame], buffer: str = "visibility") -> Flicker:
+    """Mean temporal difference after re-projection, of consecutive frames with their own cameras.
+
+    Each surface pixel is looked for in the frame before, by `viewZ` and the two cameras; it is compared, bilinearly,
+    if the four pixels there show the same surface. Objects must stand still: a point that moves is another point.
+    What shading truly depends on the camera (in screen space: what is on the screen) counts as flicker too.
+    Raises `ParameterError` for fewer than two frames, or frames of different sizes.
+    """
+    if len(frames) < 2:
+        raise ParameterError(f"flicker compares consecutive frames; {len(frames)} given, at least 2 needed")
+    sizes = sorted({frame.size for frame in frames})
+    if len(sizes) > 1:
+        raise ParameterError(f"flicker: frames differ in size: {', '.join(f'{w}x{h}' for w, h in sizes)}")
+    differences = [_difference(before, now, buffer) for before, now in pairwise(frames)]
+    found = np.concatenate(differences)
+    if not len(found):
+        raise ParameterError("flicker: no surface is seen in two consecutive frames")
+    surface = sum(int(frame.mask.sum()) for frame in frames[1:])
+    return Flicker(float(found.mean()), float(np.percentile(found, 99)), len(found) / surface)
+
+
+def _difference(before: Frame, now: Frame, buffer: str) -> np.ndarray:
+    """(n,): mean over channels of |now - before|, at the pixels of `now` that `before` saw."""
+    width, height = now.size
+    here, there = (Camera(**frame.info["camera"]) for frame in (now, before))
+    scale_x, scale_y, offset_x, offset_y = ray_scale_offset(here, now.size)
+    rows, columns = np.nonzero(now.mask)
+    depth = -now["viewZ"][rows, columns].astype(np.float64)
+    x, y = (columns + 0.5) * scale_x + offset_x, (height - rows - 0.5) * scale_y + offset_y
+    here_pos = np.stack([x * depth, y * depth, -depth, np.ones_like(depth)])
+    there_pos = there.view_from_world @ np.linalg.inv(here.view_from_world) @ here_pos
+
+    scale_x, scale_y, offset_x, offset_y = ray_scale_offset(there, before.size)
+    distance = np.maximum(-there_pos[2], 1e-20)
+    column = (there_pos[0] / distance - offset_x) / scale_x - 0.5
+    row = height - 0.5 - (there_pos[1] / distance - offset_y) / scale_y
+    # a camera that stands still looks at its own pixels: rounding must not fetch a neighbour across an edge
+    column, row = (np.where(np.abs(at - np.rint(at)) < 1e-4, np.rint(at), at) for at in (column, row))
+    inside = (there_pos[2] < 0) & (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)
+    low = np.floor(np.where(inside, row, 0)).astype(int), np.floor(np.where(inside, column, 0)).astype(int)
+    high = np.ceil(np.where(inside, row, 0)).astype(int), np.ceil(np.where(inside, column, 0)).astype(int)
+    four = np.stack([before["viewZ"][r, c] for r in (low[0], high[0]) for c in (low[1], high[1])])
+    seen = inside & (np.abs(four + distance) <= SAME_SURFACE * distance).all(axis=0)
+
+    values = [frame[buffer].astype(np.float64).reshape(height, width, -1) for frame in (before, now)]
+    at = np.stack([row[seen], column[seen]])
+    background = np.nan_to_num(values[0])  # its weight is 0 or it is not seen, but 0 · NaN is NaN
+    old = np.stack([map_coordinates(one, at, order=1, mode="nearest") for one in np.moveaxis(background, -1, 0)], -1)
+    return np.abs(values[1][rows[seen], columns[seen]] - old).mean(axis=-1)
