@@ -1,4 +1,4 @@
-"""The shell: `aolab render|modules|scenes|bench|doctor`. Errors are one line on stderr and exit code 2."""
+"""The shell: `aolab render|modules|scenes|bench|reproduce|doctor`. Errors are one line on stderr and exit code 2."""
 
 import json
 import sys
@@ -271,6 +271,33 @@ def tune(
         seed=seed,
     )
     print(json.dumps(result.to_dict(), indent=2) if as_json else result.table())
+
+
+@app.command()
+def reproduce(
+    paper: Annotated[str, typer.Argument(help="The paper, by its method's name: ssdo.")],
+    figure: Annotated[
+        str | None, typer.Argument(help="As in fig7 or table1. Default: all of them.", show_default=False)
+    ] = None,
+    folder: Annotated[
+        Path, typer.Option("-o", "--output", metavar="DIR", help="Where FIGURE.png and FIGURE.json are written.")
+    ] = Path("."),
+    size: Annotated[
+        str | None, typer.Option(metavar="WxH", help="Pixels of one picture. Default: each figure's own.")
+    ] = None,
+    as_json: Json = False,
+) -> None:
+    """Draw a paper's figures and tables anew, and say whether the numbers hold the paper's claims."""
+    from .command import parse_size
+    from .reproduce import reproduce_command
+
+    found = []
+    for name, content in reproduce_command(paper, figure, folder, parse_size(size) if size else None):
+        found.append(content)
+        if not as_json:
+            print(f"{folder / name}.png: {'holds' if content['holds'] else 'DOES NOT HOLD'}: {content['claim']}")
+    if as_json:
+        print(json.dumps(found, indent=2))
 
 
 def _words(text: str | None) -> list[str] | None:

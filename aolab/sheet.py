@@ -16,7 +16,7 @@ def gray(values: np.ndarray) -> np.ndarray:
 
 
 def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, *, title: str = "") -> Image.Image:
-    """Put captioned pictures, each (H, W, 3) uint8 of one size, into rows of `columns`; `title`, wrapped, goes above."""
+    """Put captioned pictures, each (H, W, 3) uint8 of one size, into rows of `columns`; `title` stands above."""
     height, width = pictures[0][1].shape[:2]
     rows = -(-len(pictures) // columns)
     cell = width + MARGIN, height + CAPTION + MARGIN

@@ -1,6 +1,7 @@
 """SSDO's figures of what the camera does not see: shadows by peeled layers (6), and by further cameras (7)."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -78,7 +79,7 @@ def _shadows_hold(numbers: dict[str, list[dict[str, float]]]) -> bool:
     lengths = [abs(one["length"] - one["length_of_a_segment"]) for both in numbers.values() for one in both]
     false = [one["false"] for one in numbers["depth"]]
     right = numbers["layers"][-1]
-    grows = all(a < b for a, b in zip(false, false[1:], strict=False))
+    grows = all(a < b for a, b in pairwise(false))
     return max(lengths) < 0.1 and grows and false[-1] > 0.5 and right["found"] > 0.95 and right["false"] < 0.05
 
 

@@ -12,7 +12,7 @@ from ..gl.texture import Size
 from ..lights import DirectionalLight, PointLight
 from ..loading import load
 from ..mesh import Material
-from ..modules import SSDO
+from ..modules import SSAO, SSDO, Module, Unoccluded
 from ..scene import Instance, Scene
 from ..shapes import block, placed
 from ..sheet import contact_sheet
@@ -24,7 +24,10 @@ from .figure import Figure, rmse, world_positions
 SIZE = (640, 360)
 YELLOW = Material((0.85, 0.62, 0.06), name="yellow")
 RADIUS = 1.0  # scene units: the boxes are 1.05 wide
-CONVERGED = {"directions": 16, "steps": 8, "accumulate": 4}
+ACCUMULATE = 4  # frames, so that noise is no part of what is compared
+OCCLUSION = SSAO(radius=RADIUS, directions=16, steps=8)
+DIRECTIONAL = SSDO(radius=RADIUS, directions=16, steps=8)
+BOUNCE = DIRECTIONAL.replace(bounces=1)
 
 
 def stage(albedo: float = 0.8) -> Scene:
@@ -35,12 +38,17 @@ def stage(albedo: float = 0.8) -> Scene:
     """
     boxes = load("boxes")
     pale = Material((albedo,) * 3, name="pale")
-    yellow = replace(YELLOW, base_color=tuple(np.multiply(YELLOW.base_color, albedo / 0.8).tolist()))
+    red, green, blue = np.multiply(YELLOW.base_color, albedo / 0.8)
+    yellow = Material((red, green, blue), name="yellow")
     *others, right = boxes.instances
     painted = [replace(one, mesh=replace(one.mesh, material=pale)) for one in others]
     painted.append(replace(right, mesh=replace(right.mesh, material=yellow)))
     bulb = PointLight((2.6, 4.2, 4.6), (26.0, 24.0, 21.0))
     return boxes.replace(instances=tuple(painted), lights=(bulb,))
+
+
+def _drawn(scene: Scene, module: Module, size: Size) -> Frame:
+    return shared_lab().render(scene, module, size=size, accumulate=ACCUMULATE)
 
 
 def fig3(size: Size = SIZE) -> Figure:
@@ -101,7 +109,7 @@ def _floor(frame: Frame) -> np.ndarray:
 
 
 def _turn(frame: Frame, where: np.ndarray, scene: Scene, side: int) -> float:
-    """The ambient light's colour `where`: 0 is the whole environment's on a floor, 1 that of its half on this `side`."""
+    """The ambient light's colour `where`: 0 is the whole environment's on a floor, 1 its half's on this `side`."""
     assert scene.environment is not None
     radiance, directions, solid_angles = averaged(scene.environment.radiance)
     arriving = radiance * (np.maximum(directions[..., 1], 0) * solid_angles)[..., None]
@@ -154,9 +162,7 @@ def _orbit(size: Size, degrees: float) -> tuple[Frame, float]:
     ground = Instance(block((40, 0.2, 40), Material((0.75, 0.75, 0.75)), "ground"), placed(0, -0.2, 0))
     sun = DirectionalLight((-0.35, -0.6, -1.0), (3.0, 2.8, 2.5))
     scene = Scene((ground, yellow), (sun,), Environment.constant((0.12, 0.14, 0.17)), camera)
-    frame = shared_lab().render(
-        scene, "ssdo", size=size, radius=0.8, bounces=1, senders="rays", **{**CONVERGED, "accumulate": 1}
-    )
+    frame = shared_lab().render(scene, BOUNCE.replace(radius=0.8, senders="rays"), size=size)
     x, y, z = np.moveaxis(world_positions(frame, View(camera, size, scene.bounds)), -1, 0)
     patch = frame.mask & (np.abs(x) < 0.5) & (np.abs(y) < 0.02) & (np.abs(z - 0.75) < 0.15)
     return frame, float(frame["indirect"][patch].mean())
@@ -187,20 +193,13 @@ def fig13(size: Size = SIZE, rays: int = 256) -> Figure:
 
 
 def _beside_truth(scene: Scene, size: Size, rays: int) -> tuple[dict[str, Frame], dict[str, float], np.ndarray]:
-    lab = shared_lab()
-    frames = {
-        "none": lab.render(scene, "none", size=size),
-        "SSAO": lab.render(scene, "ssao", size=size, radius=RADIUS, **CONVERGED),
-        "SSDO": lab.render(scene, "ssdo", size=size, radius=RADIUS, **CONVERGED),
-    }
-    for senders in ("patches", "rays"):
-        bounce = {"radius": RADIUS, "bounces": 1, "senders": senders}
-        frames[f"SSDO + 1 bounce of {senders}"] = lab.render(scene, "ssdo", size=size, **bounce, **CONVERGED)
-    like = SSDO(radius=RADIUS)
-    truth = reference(scene, size=size, like=like, rays=rays, buffers=("radiance",))
+    modules = {"none": Unoccluded(), "SSAO": OCCLUSION, "SSDO": DIRECTIONAL}
+    modules |= {f"SSDO + 1 bounce of {kind}": BOUNCE.replace(senders=kind) for kind in ("patches", "rays")}
+    frames = {name: _drawn(scene, module, size) for name, module in modules.items()}
+    truth = reference(scene, size=size, like=DIRECTIONAL, rays=rays, buffers=("radiance",))
     # the reference's senders are lit by the lights alone; ours by the environment too, whose bounce is that of lights
     skylit = scene.replace(lights=_as_lights(scene))
-    sky = reference(skylit, size=size, like=like, rays=max(rays // 4, 2), buffers=("indirect",))
+    sky = reference(skylit, size=size, like=DIRECTIONAL, rays=max(rays // 4, 2), buffers=("indirect",))
     radiance = truth["radiance"] + sky["indirect"]
     mask = frames["none"].mask
     return frames, {name: rmse(frame["radiance"], radiance, mask) for name, frame in frames.items()}, shown(radiance)
@@ -223,8 +222,8 @@ RADII = (0.25, 0.5, 1.0, 2.0)  # scene units
 
 def fig14(size: Size = SIZE) -> Figure:
     """SSDO with one bounce for growing radii. Numbers: the share of the picture that shadows and bounces reach."""
-    scene, lab = stage(), shared_lab()
-    frames = {radius: lab.render(scene, "ssdo", size=size, radius=radius, bounces=1, **CONVERGED) for radius in RADII}
+    scene = stage()
+    frames = {radius: _drawn(scene, BOUNCE.replace(radius=radius), size) for radius in RADII}
     mask = frames[RADII[0]].mask
     level = 0.02 * float(frames[RADII[0]]["radiance"][mask].mean())  # a fiftieth of the picture's own light
     shadows = [float((frame["visibility"][mask] < 0.95).mean()) for frame in frames.values()]

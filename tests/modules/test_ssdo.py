@@ -1,0 +1,425 @@
+"""SSDO against exact answers, against SSAO with the same samples, and against rays."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small_scenes
+from small_scenes import box, floor, of, quad, world_positions
+
+import aolab
+from aolab import Camera, DirectionalLight, Environment, Material, PointLight
+from aolab.measures.flicker import flicker
+
+DARK = Environment.constant(0.0)
+COLOUR = Material((0.8, 0.5, 0.25))
+RED, GREEN = Material((0.75, 0.0, 0.0)), Material((0.0, 0.75, 0.0))
+DOWN = Camera((0, 6, 0), (0, 0, 0), up=(0, 0, -1), fov=40)  # straight down: right is +x, up is -z
+OPEN_MESHES = "ignore:.*not closed:aolab.Notice"
+HALF = 2e-3  # relative: three roundings to half floats (albedo, irradiance, ambient)
+
+
+def rms(values: np.ndarray) -> float:
+    return float(np.sqrt(np.nanmean(np.square(values, dtype=np.float64))))
+
+
+def two_colours(row_count: int = 64) -> Environment:
+    """Red from the right (+x), blue from the left."""
+    radiance = np.zeros((row_count, 2 * row_count, 3), np.float32)
+    radiance[:, row_count:, 0] = radiance[:, :row_count, 2] = 1
+    return Environment(radiance, "red and blue")
+
+
+# --- direct light of the environment
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+@pytest.mark.parametrize("occluders", ["depth", "layers", "views"])
+@pytest.mark.parametrize("settings", [{}, {"scale": 0.5, "filter": "none"}, {"steps": 1, "bias": 0.0}])
+def test_an_open_plane_under_a_constant_sky_gives_exactly_albedo_times_radiance(lab, occluders, settings):
+    sky = np.array((0.5, 1.0, 2.0))
+    scene = of(floor(100, COLOUR), camera=Camera((0, 3, 6), (0, 0, 0)), sky=Environment.constant(tuple(sky)))
+    frame = lab.render(scene, "ssdo", occluders=occluders, **settings)
+    assert (frame["visibility"][frame.mask] == 1).all()
+    expected = np.broadcast_to(np.array(COLOUR.base_color) * sky, frame["ambient"][frame.mask].shape)
+    np.testing.assert_allclose(frame["ambient"][frame.mask], expected, rtol=HALF)
+    assert len(np.unique(frame["ambient"][frame.mask], axis=0)) == 1  # no pattern, not even of the last bit
+
+
+@pytest.mark.parametrize("settings", [{}, {"steps": 1, "falloff": 1.0}, {"directions": 16, "scale": 0.5}])
+def test_under_a_constant_sky_it_is_ssao_with_the_same_samples(lab, boxes, settings):
+    shared = {"radius": 0.8, "seed": 3, **settings}
+    ssao, ssdo = (lab.render(boxes, name, **shared) for name in ("ssao", "ssdo"))
+    np.testing.assert_allclose(ssdo["visibility"], ssao["visibility"], atol=1e-3)  # filtered as half floats
+    assert np.nanmin(ssdo["visibility"]) < 0.7
+    whole = ssdo["visibility"][..., None] * ssdo["albedo"]  # L = 1
+    np.testing.assert_allclose(ssdo["ambient"][ssdo.mask], whole[ssdo.mask], rtol=HALF, atol=5e-4)
+    bare = {**shared, "filter": "none", "scale": 1.0}
+    ssao, ssdo = (lab.render(boxes, name, **bare) for name in ("ssao", "ssdo"))
+    np.testing.assert_array_equal(ssdo["visibility"], ssao["visibility"])
+
+
+def test_the_shadow_of_a_wall_has_the_colour_of_the_open_side(lab, wall):
+    """Red light from the side that is open, blue from behind the wall: beside it the floor is red, where SSAO's is grey."""
+    scene = replace(wall, environment=two_colours())
+    settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "filter": "none"}
+    # 64 directions of 64: the environment is blurred to a tenth of a steradian, and the horizon is sharp enough
+    converged = {"directions": 64, "steps": 16, "accumulate": 4, "size": (96, 72)}
+    frame = lab.render(scene, "ssdo", **settings, **converged)
+    truth = aolab.reference(scene, size=(96, 72), like=aolab.SSDO(radius=1.0), rays=256, buffers="ambient", cache=False)
+    x, y, z = np.moveaxis(world_positions(frame, wall.camera), -1, 0)
+    seen = (np.abs(y) < 1e-3) & (np.abs(z) < 0.5) & (x > 0.03) & (x < 1.3)
+    assert rms(frame["ambient"][seen] - truth["ambient"][seen]) < 0.02
+    grey = lab.render(scene, "ssao", size=(96, 72), steps=16, accumulate=4, **settings)
+    corner, away = seen & (x < 0.1), seen & (x > 1.05)
+
+    def blue_share(values: np.ndarray) -> float:
+        red, _, blue = values.mean(axis=0)
+        return float(blue / (red + blue))
+
+    for one in (frame, truth):
+        assert blue_share(one["ambient"][corner]) < 0.1
+        assert blue_share(one["ambient"][away]) == pytest.approx(0.5, abs=0.01)
+    assert blue_share(grey["ambient"][corner]) == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_environments_blur_takes_noise_away_and_leaves_the_mean(lab, plane):
+    """On a map of random texels; `environment_lod` 0 looks one of them up a direction."""
+    texels = np.random.default_rng(5).random((64, 128, 1)) ** 8  # few bright ones
+    scene = replace(plane, environment=Environment(np.repeat(texels, 3, axis=2)))
+    settings = {"filter": "none", "size": (64, 48)}
+    sharp, one, wide = (lab.render(scene, "ssdo", environment_lod=lod, **settings) for lod in (0.0, 1.0, 4.0))
+    spread = {}
+    for name, frame in (("sharp", sharp), ("one", one), ("wide", wide)):
+        values = frame["ambient"][frame.mask][:, 0]
+        assert values.mean() == pytest.approx(texels.mean(), rel=0.1)
+        spread[name] = values.std()
+    assert spread["wide"] < 0.7 * spread["one"] < 0.7 * 0.3 * spread["sharp"]
+
+
+def test_without_blur_many_sets_come_to_the_reference(lab, boxes):
+    """The unblurred estimate has no bias of its own: all of it converges to rays."""
+    scene = replace(boxes, environment=two_colours())
+    settings = {"environment_lod": 0.0, "directions": 32, "steps": 16, "accumulate": 16, "filter": "none"}
+    frame = lab.render(scene, "ssdo", radius=0.5, **settings)
+    truth = aolab.reference(scene, size=frame.size, like=aolab.SSDO(radius=0.5), buffers="ambient", cache=False)
+    error = (frame["ambient"] - truth["ambient"])[frame.mask]
+    assert np.abs(error.mean(axis=0)).max() < 0.01
+    assert rms(error) < 0.04
+
+
+def test_black_infinite_and_missing_pixels_make_no_hole_in_the_picture(lab, boxes):
+    radiance = np.zeros((16, 32, 3), np.float32)
+    radiance[3, 5], radiance[9, 9], radiance[2, :10], radiance[4, 4:8] = np.inf, np.nan, -1, 60000
+    with pytest.warns(aolab.Notice, match="1 NaN, 10 negative, 1 infinite: NaN and negative became 0, infinite 60000"):
+        environment = Environment(radiance)
+    scene = replace(boxes, environment=environment)
+    for settings in ({"bounces": 1}, {"environment_lod": 0.0, "scale": 0.5}):
+        frame = lab.render(scene, "ssdo", **settings)
+        for name in ("irradiance", "ambient", "radiance", "visibility"):
+            assert np.isfinite(frame[name][frame.mask]).all(), name
+        assert frame["ambient"].max() > 100
+    black = lab.render(replace(boxes, environment=DARK), "ssdo", bounces=1)
+    assert (black["ambient"] == 0).all()
+    assert (black["indirect"] == 0).all()
+    assert np.nanmin(black["visibility"]) < 0.9  # the light is gone, the shapes are not
+
+
+# --- one bounce
+
+
+SENDER = """
+#include "lib/space.glsl"
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform sampler2D sender;
+uniform vec2 texel_size;
+uniform vec4 pixel_from_ray;
+struct Occluder { vec3 viewPos; };
+// every direction meets one sender, at OFFSET from the middle of the picture, which is lifted by a hundredth
+bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
+    occluder.viewPos = vec3(0.0, 0.0, -3.99) + vec3(OFFSET);
+    return true;
+}
+vec3 occluderNormal(Occluder occluder) { return normalize(vec3(NORMAL)); }
+vec3 occluderRadiance(Occluder occluder) { return vec3(2.0, 1.0, 0.5); }
+"""
+
+
+def bounce_of(shaders, offset: str, normal: str, **settings) -> np.ndarray:
+    """The irradiance (3,) of a wall that faces the camera, from one sender: `offset` and `normal` in view space."""
+    (shaders / "occluders" / "depth.glsl").write_text(SENDER.replace("OFFSET", offset).replace("NORMAL", normal))
+    scene = of(quad((-9, -9, 0), (18, 0, 0), (0, 18, 0)), camera=Camera((0, 0, 4), (0, 0, 0), fov=20))
+    module = aolab.SSDO(radius=0.5, bias=0.02, bounces=1, filter="none").replace(**settings)
+    frame = aolab.Lab((65, 65)).render(scene, module)
+    return frame["bounce"][32, 32]
+
+
+@pytest.mark.parametrize(
+    ("offset", "normal", "form_factor"),
+    [
+        ("0, 0, 2", "0, 0, -1", 1 / 4),  # facing each other, at a distance of 2
+        ("0, 0, 2", "0, 1, -1", np.sqrt(0.5) / 4),  # turned by 45°
+        ("0, 2, 2", "0, 0, -1", 0.5 / 8),  # 45° off at both ends, √8 away
+        ("0, 0, 2", "0, 0, 1", 0),  # shows its back
+        ("0, 0, -2", "0, 0, 1", 0),  # below the receiver's horizon, facing it
+        ("0, 0, 0.1", "0, 0, -1", 1 / 0.25**2),  # nearer than the clamp
+        ("0, 0, 0", "0, 0, -1", 0),  # at the point itself: a direction of no length
+    ],
+)
+def test_a_patch_sends_what_its_form_factor_says(shaders, offset, normal, form_factor):
+    """E = L · A cosθ_s cosθ_r / d² · bleeding, A = π r² / N, summed over N such patches."""
+    found = bounce_of(shaders, offset, normal, bleeding=1.5, distance_clamp=0.25)
+    expected = np.array((2.0, 1.0, 0.5)) * 1.5 * np.pi * 0.5**2 * form_factor
+    np.testing.assert_allclose(found, expected, rtol=2e-3, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("offset", "normal", "share"),
+    [("0, 1, 2", "0, 0, -1", 1), ("0, 0, 2", "0, 0, 1", 0), ("0, 0, -2", "0, 0, 1", 0)],
+    ids=["facing", "from behind", "below the horizon"],
+)
+def test_a_ray_brings_all_of_what_it_meets(shaders, offset, normal, share):
+    """E = π L, if every direction meets it; however far away it is."""
+    found = bounce_of(shaders, offset, normal, senders="rays")
+    np.testing.assert_allclose(found, np.array((2.0, 1.0, 0.5)) * np.pi * share, rtol=2e-3)
+
+
+def red_wall(camera: Camera, lights: tuple = ()) -> aolab.Scene:
+    """A white floor right of a red wall in the plane x = 0, in the dark but for a sun that shines on both."""
+    sun = DirectionalLight((-1, -1, 0), (3.0, 3.0, 3.0), shadow=False)
+    ground = quad((0, 0, 10), (10, 0, 0), (0, 0, -20), name="floor")
+    upright = quad((0, 0, 10), (0, 0, -20), (0, 4, 0), RED, "wall")
+    return of(ground, upright, camera=camera, lights=lights or (sun,), sky=DARK)
+
+
+BESIDE = Camera((4, 3, 0), (0.5, 0.3, 0), fov=60)
+BOUNCE = {"radius": 1.0, "bounces": 1, "filter": "none", "steps": 8}
+
+
+@pytest.mark.parametrize("senders", ["patches", "rays"])
+def test_the_bounce_has_the_senders_colour_and_ends_with_the_radius(lab, senders):
+    frame = lab.render(red_wall(BESIDE), "ssdo", senders=senders, **BOUNCE)
+    x, y, z = np.moveaxis(world_positions(frame, BESIDE), -1, 0)
+    ground = (np.abs(y) < 1e-3) & (np.abs(z) < 1)
+    indirect = frame["indirect"]
+    assert (indirect[ground][:, 1:] == 0).all()  # red alone
+    assert (
+        indirect[ground & (x > 0.1) & (x < 0.3), 0].mean() > 3 * indirect[ground & (x > 0.7) & (x < 0.9), 0].mean() > 0
+    )
+    assert (indirect[ground & (x > 1.05)] == 0).all()
+    upright = (np.abs(x) < 1e-3) & (y < 0.2) & (np.abs(z) < 1)
+    assert (indirect[upright][:, 1:] == 0).all()  # the floor is white, but red is all that the wall reflects
+    assert indirect[upright, 0].mean() > 0
+
+
+def test_senders_that_show_only_their_backs_give_nothing(lab):
+    """Straight down on a box: what the floor beside it meets is the top, which faces away."""
+    sun = DirectionalLight((0, -1, 0), (3.0, 3.0, 3.0))
+    scene = of(floor(9), box((-1, 0, -1), (1, 0.8, 1), RED), camera=DOWN, lights=(sun,), sky=DARK)
+    for senders in ("patches", "rays"):
+        frame = lab.render(scene, "ssdo", senders=senders, **BOUNCE)
+        assert np.nanmin(frame["visibility"]) < 0.8
+        assert (frame["indirect"] == 0).all()
+
+
+def test_bleeding_scales_the_bounce(lab):
+    one, two, none = (lab.render(red_wall(BESIDE), "ssdo", bleeding=b, **BOUNCE) for b in (1.0, 2.0, 0.0))
+    assert one["indirect"].max() > 0.05
+    np.testing.assert_allclose(two["indirect"], 2 * one["indirect"], rtol=HALF, atol=1e-5)
+    assert (none["indirect"] == 0).all()
+    sum_of_parts = one["direct"] + one["ambient"] + one["indirect"]
+    np.testing.assert_allclose(one["radiance"][one.mask], sum_of_parts[one.mask], rtol=HALF, atol=1e-3)
+
+
+def test_the_clamp_is_a_patchs_own_radius_unless_given(lab):
+    for directions in (4, 16):
+        frame = lab.render(red_wall(BESIDE), "ssdo", directions=directions, **BOUNCE)
+        assert frame.info["parameters"]["distance_clamp"] == pytest.approx(1.0 / np.sqrt(directions))
+        given = lab.render(red_wall(BESIDE), "ssdo", directions=directions, distance_clamp=directions**-0.5, **BOUNCE)
+        np.testing.assert_array_equal(frame["indirect"], given["indirect"])
+    near, far = (lab.render(red_wall(BESIDE), "ssdo", distance_clamp=clamp, **BOUNCE) for clamp in (0.01, 1.0))
+    assert near["indirect"].max() > 2 * far["indirect"].max()
+    with pytest.raises(aolab.ParameterError, match="distance_clamp"):
+        aolab.SSDO(distance_clamp=0.0)
+
+
+def test_converged_rays_are_the_references_bounce(lab):
+    """Lit by lights alone: the reference's senders know no environment, and SSDO's reflect that too."""
+    scene = aolab.load("boxes", ambient=0.0)
+    settings = {"radius": 1.0, "bounces": 1, "senders": "rays", "directions": 16, "steps": 16, "filter": "none"}
+    frame = lab.render(scene, "ssdo", size=(192, 108), accumulate=8, occluders="layers", **settings)
+    like = aolab.SSDO(radius=1.0)
+    truth = aolab.reference(scene, size=frame.size, like=like, buffers="indirect", cache=False)
+    lit = frame.mask
+    error = frame["indirect"][lit] - truth["indirect"][lit]
+    scale = rms(truth["indirect"][lit])
+    assert rms(error) < 0.35 * scale
+    assert abs(error.mean()) < 0.15 * truth["indirect"][lit].mean()
+    assert np.corrcoef(frame["indirect"][lit].ravel(), truth["indirect"][lit].ravel())[0, 1] > 0.95
+
+
+def test_a_bounce_at_half_resolution(lab, boxes):
+    sun = DirectionalLight((-1, -1.5, -1), (3.0, 3.0, 3.0))
+    scene = replace(boxes, lights=(sun,))
+    whole, half = (lab.render(scene, "ssdo", bounces=1, scale=scale, radius=0.8, size=(128, 96)) for scale in (1, 0.5))
+    assert half["indirect"].shape == whole["indirect"].shape
+    assert whole["indirect"].max() > 0.05
+    assert rms(half["indirect"] - whole["indirect"]) < 0.25 * rms(whole["indirect"])
+    assert np.isfinite(half["radiance"][half.mask]).all()
+
+
+# --- lights on the screen
+
+
+def shadow_of_box(position: np.ndarray, towards: np.ndarray, reach: float, low, high) -> np.ndarray:
+    """Does the segment of length `reach` from `position` (..., 3) meet the box? The slab test."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b = ((np.asarray(side) - position) / towards for side in (low, high))
+    enters, leaves = np.minimum(a, b).max(axis=-1), np.maximum(a, b).min(axis=-1)
+    return (enters < leaves) & (leaves > 0) & (enters < reach)
+
+
+BLOCK = (-0.5, 0, -0.5), (0.5, 0.6, 0.5)
+SUN = DirectionalLight((1, -1, 0.2), (2.0, 2.0, 2.0), shadow=False)
+
+
+def block_scene(*lights) -> aolab.Scene:
+    camera = Camera((0.6, 4, 3.5), (0.4, 0, 0), fov=40)
+    return of(floor(9), box(*BLOCK), camera=camera, lights=lights, sky=DARK)
+
+
+def shadow_error(frame: aolab.Frame, scene: aolab.Scene, towards: np.ndarray, reach: np.ndarray | float) -> float:
+    """The share of the floor's pixels that are lit and should not be, or the other way round."""
+    position = world_positions(frame, scene.camera)
+    ground = frame.mask & (np.abs(position[..., 1]) < 1e-3)
+    expected = shadow_of_box(
+        position[ground] + (0, 1e-4, 0), np.broadcast_to(towards, position.shape)[ground], reach, *BLOCK
+    )
+    assert 0.03 < expected.mean() < 0.5
+    return float(((frame["direct"][ground][:, 0] == 0) != expected).mean())
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_a_shadow_on_the_screen_falls_where_geometry_says(lab):
+    """A light without a shadow map: its shadow is all that the samples towards it find, and as long as the radius."""
+    scene = block_scene(SUN)
+    towards = -np.array(SUN.direction) / np.linalg.norm(SUN.direction)
+    for radius in (0.4, 2.0):
+        settings = {"radius": radius, "light_steps": 64, "occluders": "layers", "bias": 0.0, "size": (128, 96)}
+        frame = lab.render(scene, "ssdo", **settings)
+        assert shadow_error(frame, scene, towards, radius) < 0.02
+    without = lab.render(scene, "ssdo")
+    assert (without["direct"][without.mask & (without["viewNormal"][..., 1] > 0.5)] > 0).all()
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_a_point_lights_samples_end_at_the_light(lab):
+    lamp = PointLight((-1.1, 0.9, 0.1), (2.0, 2.0, 2.0), shadow=False)
+    scene = block_scene(lamp)
+    settings = {"radius": 5.0, "light_steps": 64, "occluders": "layers", "bias": 0.0, "size": (128, 96)}
+    frame = lab.render(scene, "ssdo", **settings)
+    towards = np.array(lamp.position) - world_positions(frame, scene.camera)
+    assert shadow_error(frame, scene, towards, 1.0) < 0.03  # in lengths of `towards`
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_a_light_inside_an_object_lights_nothing_outside(lab):
+    scene = block_scene(PointLight((0, 0.3, 0), (2.0, 2.0, 2.0), shadow=False))
+    frame = lab.render(scene, "ssdo", radius=5.0, light_steps=64, occluders="layers", bias=0.0, size=(128, 96))
+    ground = world_positions(frame, scene.camera)[..., 1] < 1e-3
+    assert (frame["direct"][frame.mask & ground] == 0).mean() > 0.99
+    assert np.isfinite(frame["radiance"]).all()
+    through = lab.render(scene, "ssdo", size=(128, 96))["direct"][frame.mask & ground]
+    assert through.max() > 0.1  # without samples on the screen, and without a shadow map, it shines through
+
+
+def test_screen_shadows_come_on_top_of_shadow_maps(lab):
+    lit = replace(SUN, shadow=True)
+    mapped, both = (lab.render(block_scene(lit), "ssdo", radius=0.5, light_steps=steps) for steps in (0, 16))
+    assert (both["direct"] <= mapped["direct"]).all()
+    assert (both["direct"][mapped["direct"] == 0] == 0).all()
+
+
+# --- what is switched off costs nothing
+
+PLAIN = {"g_buffer", "ssdo", "filter irradiance", "direct", "ambient", "compose"}
+
+
+def test_nothing_is_paid_for_what_is_switched_off(lab, boxes):
+    lab.render(boxes, "none")  # the shadow maps of a scene that stands still are drawn once
+    frame = lab.render(boxes, "ssdo")
+    assert set(frame.timings) == PLAIN
+    names = ["albedo", "ambient", "direct", "image", "irradiance", "irradiance_raw", "radiance", "viewNormal", "viewZ"]
+    assert frame.buffers == sorted([*names, "visibility", "visibility_raw"])
+    assert set(lab.render(boxes, "ssao").timings) == PLAIN - {"ssdo", "filter irradiance"} | {
+        "ssao",
+        "filter visibility",
+    }
+
+    bounced = lab.render(boxes, "ssdo", bounces=1)
+    assert set(bounced.timings) - PLAIN == {"sender", "ssdo bounce", "filter bounce", "indirect"}
+    assert set(bounced.buffers) - set(frame.buffers) == {"sender", "bounce", "bounce_raw", "indirect"}
+    lit = lab.render(boxes, "ssdo", light_steps=8)
+    assert set(lit.timings) == PLAIN
+    assert lit.buffers == frame.buffers
+
+
+def test_without_samples_towards_them_lights_are_as_without_the_module(lab):
+    scene = block_scene(replace(SUN, shadow=True), PointLight((-1.1, 0.9, 0.1)))
+    plain, ssdo = (lab.render(scene, name)["direct"] for name in ("none", "ssdo"))
+    np.testing.assert_array_equal(ssdo, plain)
+
+
+# --- truth
+
+
+@pytest.mark.parametrize("occluders", ["layers", "views"])
+def test_converged_it_is_ray_traced_directional_occlusion(lab, occluders):
+    """Within 3 % of rays on `boxes` (at 480×270: 0.011 and 0.012), where one layer is not."""
+    scene, size = aolab.load("boxes"), (240, 136)
+    truth = aolab.reference(scene, size=size, like="ssdo", rays=128, buffers=("visibility", "ambient"), cache=False)
+    settings = {"directions": 16, "steps": 16, "accumulate": 4, "filter": "none", "size": size}
+    frame, one_layer = (lab.render(scene, "ssdo", occluders=kind, **settings) for kind in (occluders, "depth"))
+    assert rms(frame["visibility"] - truth["visibility"]) < 0.03
+    assert rms((frame["ambient"] - truth["ambient"])[frame.mask]) < 0.01
+    assert rms(one_layer["visibility"] - truth["visibility"]) > 0.03
+
+
+# --- animation
+
+
+def test_noise_stays_still_while_the_camera_moves(lab, record_property):
+    """One sample set for all frames: what flickers is little, and far less than with a set for each."""
+    scene = aolab.load("boxes")
+    assert scene.camera is not None
+    eyes = [(0.02 * i, 2.7, 6.6) for i in range(5)]
+
+    def along_the_path(buffer: str, **settings) -> float:
+        frames = [
+            lab.render(scene, "ssdo", camera=replace(scene.camera, eye=eye), size=(240, 136), **chosen)
+            for i, eye in enumerate(eyes)
+            for chosen in [{name: value(i) for name, value in settings.items()}]
+        ]
+        return flicker(frames, buffer).mean
+
+    still = along_the_path("visibility")
+    anew = along_the_path("visibility", seed=lambda i: i)
+    record_property("flicker of the visibility", still)
+    record_property("with a sample set for each frame", anew)
+    print(f"flicker: {still:.5f}, with a sample set for each frame {anew:.5f}")
+    assert still < 0.002
+    assert still < 0.2 * anew
+    assert along_the_path("ambient") < 0.001
+
+
+def test_what_stands_still_does_not_change_while_something_moves(lab):
+    """Toasters turn; where nothing that moved is near, every pixel stays as it is."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", aolab.Notice)
+        before, now = (lab.render(aolab.load("toasters", time=time), "ssdo", radius=0.2) for time in (0.0, 0.04))
+    same = (before["viewZ"] == now["viewZ"]) & before.mask
+    changed = (before["visibility"] != now["visibility"]) & same
+    assert (before["viewZ"] != now["viewZ"]).any()
+    assert changed.sum() < 0.1 * same.sum()
