@@ -90,7 +90,7 @@ def scaling(size: Size, repeats: int) -> Result:
     boxes = load("boxes")
     halves = [(max(1, size[0] // k), max(1, size[1] // k)) for k in (4, 3, 2, 1)]
     by_pixels = {w * h: _costs(lab, boxes, SSAO(), (w, h), repeats) for w, h in halves}
-    by_taps = {n * 2: _costs(lab, boxes, SSAO(directions=n), size, repeats) for n in (8, 16, 32, 64)}
+    by_taps = {n * 2: _costs(lab, boxes, SSAO(directions=n, steps=2), size, repeats) for n in (8, 16, 32, 64)}
     details = [load("atrium", detail=detail) for detail in (1, 2, 3, 4)]
     by_triangles = {scene.triangles: _costs(lab, scene, SSAO(radius=0.5), size, repeats) for scene in details}
     return {

@@ -7,6 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from .errors import Notice, SceneError
+from .features import local_maxima
 from .normals import smooth_normals
 
 CREASE_DEGREES = 40.0  # faces that meet at less than this share a normal; 30-60 is the usual range of modelling tools
@@ -113,13 +114,24 @@ class Mesh:
             object.__setattr__(self, key, array)
 
     @cached_property
-    def is_closed(self) -> bool:
-        """Whether every edge joins two triangles, vertices at one place counted as one: the mesh bounds a solid."""
-        _, point = np.unique(self.vertices, axis=0, return_inverse=True)
+    def welded(self) -> tuple[np.ndarray, np.ndarray]:
+        """The mesh with vertices at one place as one: points (P, 3), and the triangles' edges (3 F, 2) between them."""
+        points, point = np.unique(self.vertices, axis=0, return_inverse=True)
         corners = point.reshape(-1)[self.faces]
-        edges = np.sort(np.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]]), axis=1)
-        _, uses = np.unique(edges[:, 0].astype(np.int64) * len(self.vertices) + edges[:, 1], return_counts=True)
+        edges = np.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]])
+        return points.astype(np.float64), np.sort(edges, axis=1)
+
+    @cached_property
+    def is_closed(self) -> bool:
+        """Whether every edge joins two triangles (or four, ...): the mesh bounds a solid."""
+        points, edges = self.welded
+        _, uses = np.unique(edges[:, 0].astype(np.int64) * len(points) + edges[:, 1], return_counts=True)
         return bool((uses % 2 == 0).all())
+
+    @cached_property
+    def local_maxima(self) -> tuple[np.ndarray, np.ndarray]:
+        """Points (n, 3) of local space, higher than their neighbours along one of `features.AXES`, and which one."""
+        return local_maxima(*self.welded)
 
     @staticmethod
     def _refuse_nonfinite(array: np.ndarray, what: str) -> None:

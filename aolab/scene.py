@@ -8,6 +8,7 @@ import numpy as np
 from .camera import Camera
 from .environment import Environment
 from .errors import SceneError
+from .features import AXES, mean_nearest_distance
 from .lights import DirectionalLight, Light
 from .mesh import Mesh
 
@@ -103,6 +104,19 @@ class Scene:
     def triangles(self) -> int:
         """How many triangles are drawn, instances counted."""
         return sum(len(instance.mesh.faces) for instance in self.instances)
+
+    @cached_property
+    def feature_distance(self) -> float | None:
+        """The mean distance between neighbouring local maxima (`aolab.features`), or None where there is one only."""
+        points, axes = [], []
+        for instance in self.instances:
+            local, axis = instance.mesh.local_maxima
+            points.append(local @ instance.world_from_local[:3, :3].T + instance.world_from_local[:3, 3])
+            axes.append(axis)
+        world, along = np.concatenate(points), np.concatenate(axes)
+        distances = [mean_nearest_distance(world[along == axis]) for axis in range(len(AXES))]
+        known = [distance for distance in distances if distance is not None]
+        return float(np.mean(known)) if known else None
 
     def world_triangles(self) -> np.ndarray:
         """(triangles, 3, 3) float64: every triangle's corners in world space, in the order of the instances."""

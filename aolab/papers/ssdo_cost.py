@@ -94,7 +94,7 @@ def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
     for row in rows:
         do, bounce = row["directional_occlusion"], row["one_bounce"]
         cells.append([
-            f"{row['size'][0]}×{row['size'][1]}",
+            f"{row['size'][0]} x {row['size'][1]}",
             f"{row['directions']}",
             f"{row['ssao_milliseconds']:.1f}",
             *(f"{value:.1f}" for value in do.values()),

@@ -27,7 +27,7 @@ SIZE = (480, 270)
 # --- figure 6: a post in the light of one bulb; lengths in scene units
 POST, THICK = 1.2, 0.3  # its height and thickness
 BULB = (-2.6, 2.6, 0.0)
-RADII = (0.5, 1.0, 2.0)
+RADII = (0.75, 1.5, 3.0)  # the last one is longer than the shadow
 LIGHT_STEPS = 64
 
 
@@ -39,7 +39,7 @@ def fig6(size: Size = SIZE) -> Figure:
     """
     scene = _post()
     assert scene.camera is not None
-    truth = reference(scene.replace(lights=(_bulb(),)), size=size, rays=2, buffers=("direct", "radiance"))
+    truth = reference(scene.replace(lights=(_bulb(),)), size=size, rays=64, buffers=("direct", "radiance"))
     positions = world_positions(truth, View(scene.camera, truth.size, scene.bounds))
     with np.errstate(invalid="ignore"):
         ground = truth.mask & (np.abs(positions[..., 1]) < 1e-3)
@@ -92,18 +92,18 @@ def _post() -> Scene:
     paper = Material((0.75, 0.75, 0.75))
     post = Instance(block((THICK, POST + 0.01, THICK), Material((0.3, 0.45, 0.75)), "post"), placed(0, -0.01, 0))
     ground = Instance(block((30, 0.2, 30), paper, "ground"), placed(0, -0.2, 0))
-    camera = Camera((0.9, 2.2, 4.6), (0.45, 0.35, 0), fov=36)
+    camera = Camera((1.2, 2.2, 4.8), (0.85, 0.3, 0), fov=38)
     return Scene((ground, post), (_bulb(shadow=False),), Environment.constant(0.06), camera)
 
 
 def _lit_on_screen(scene: Scene, size: Size, radius: float, occluders: str) -> Frame:
-    settings = {"occluders": occluders, "layers": 4, "light_steps": LIGHT_STEPS, "environment_lod": 0.0}
+    settings = {"occluders": occluders, "light_steps": LIGHT_STEPS, "bias": 0.002}
     return shared_lab().render(scene, "ssdo", size=size, radius=radius, **settings)
 
 
 def _reach(radius: float) -> float:
     """How far from the post the ground is still shaded by a segment of that length, towards the bulb."""
-    across, up = -BULB[0] - THICK / 2, BULB[1]
+    across, up = THICK / 2 - BULB[0], BULB[1]
     whole = across * POST / (up - POST)
     distance = np.linspace(0, whole, 10_000)
     slant = np.hypot(distance + across, up) / (distance + across)
@@ -133,8 +133,8 @@ def fig7(size: Size = SIZE, rays: int = 128) -> Figure:
         gained = whole["indirect"] - unpainted["indirect"]
         shade[name], bounce[name] = float(lost.sum()), float(gained.sum())
         pictures.append((f"{name}: visibility", gray(_crop(whole["visibility"]))))
-        pictures.append((f"{name}: bounces × 4", shown(4 * _crop(whole["indirect"]))))
-        pictures.append((f"{name}: bounce of the hidden column × 10", shown(10 * _crop(np.maximum(gained, 0)))))
+        pictures.append((f"{name}: 4 times the bounce", shown(4 * _crop(whole["indirect"]))))
+        pictures.append((f"{name}: 10 times the hidden column's", shown(10 * _crop(np.maximum(gained, 0)))))
     numbers = {
         "shadow_of_the_hidden_column": {name: value / shade["rays"] for name, value in shade.items()},
         "bounce_of_the_hidden_column": {name: value / bounce["rays"] for name, value in bounce.items()},

@@ -22,7 +22,7 @@ from ..view import View
 from .figure import Figure, rmse, world_positions
 
 SIZE = (640, 360)
-YELLOW = Material((0.85, 0.62, 0.06), name="yellow")
+PALE, YELLOW = 0.8, Material((0.85, 0.62, 0.06), name="yellow")
 RADIUS = 1.0  # scene units: the boxes are 1.05 wide
 ACCUMULATE = 4  # frames, so that noise is no part of what is compared
 OCCLUSION = SSAO(radius=RADIUS, directions=16, steps=8)
@@ -30,16 +30,16 @@ DIRECTIONAL = SSDO(radius=RADIUS, directions=16, steps=8)
 BOUNCE = DIRECTIONAL.replace(bounces=1)
 
 
-def stage(albedo: float = 0.8) -> Scene:
+def stage(albedo: float = PALE) -> Scene:
     """Two pale boxes and a yellow one on a pale floor, pink light from the left and turquoise from the right.
 
     As the paper's Fig. 3, 13 and 14: one environment map, and one point light with a shadow map. `albedo`: of all that
     is pale; the yellow box keeps its hue.
     """
     boxes = load("boxes")
-    pale = Material((albedo,) * 3, name="pale")
-    red, green, blue = np.multiply(YELLOW.base_color, albedo / 0.8)
-    yellow = Material((red, green, blue), name="yellow")
+    pale = Material((albedo, albedo, albedo), name="pale")
+    red, green, blue = YELLOW.base_color
+    yellow = Material((red * albedo / PALE, green * albedo / PALE, blue * albedo / PALE), name="yellow")
     *others, right = boxes.instances
     painted = [replace(one, mesh=replace(one.mesh, material=pale)) for one in others]
     painted.append(replace(right, mesh=replace(right.mesh, material=yellow)))
@@ -56,16 +56,10 @@ def fig3(size: Size = SIZE) -> Figure:
 
     0 is the colour that the open floor has, 1 the colour of the light from the open side alone.
     """
-    scene, lab = stage(), shared_lab()
-    frames = {
-        "none": lab.render(scene, "none", size=size),
-        "SSAO": lab.render(scene, "ssao", size=size, radius=RADIUS, **CONVERGED),
-        "SSDO": lab.render(scene, "ssdo", size=size, radius=RADIUS, **CONVERGED),
-        "SSDO + 1 bounce": lab.render(scene, "ssdo", size=size, radius=RADIUS, bounces=1, **CONVERGED),
-    }
-    truth = reference(
-        scene, size=size, like=SSDO(radius=RADIUS), rays=64, buffers=("visibility", "ambient", "bent_normal")
-    )
+    scene = stage()
+    modules = {"none": Unoccluded(), "SSAO": OCCLUSION, "SSDO": DIRECTIONAL, "SSDO + 1 bounce": BOUNCE}
+    frames = {name: _drawn(scene, module, size) for name, module in modules.items()}
+    truth = reference(scene, size=size, like=DIRECTIONAL, rays=64, buffers=("visibility", "ambient", "bent_normal"))
     floor = _floor(frames["none"])
     shaded = floor & (np.abs(truth["visibility"] - 0.65) < 0.25)
     turns = {}
@@ -141,7 +135,7 @@ def fig4(size: Size = SIZE, frames: int = FRAMES) -> Figure:
         f"{index * TOTAL / (2 * frames - 2):.0f}° around: the bounce is {values[index]:.2f}" for index in chosen
     ]
     pictures = [(caption, fine[index][0].image) for caption, index in zip(captions, chosen, strict=True)]
-    pictures += [("indirect × 4", shown(4 * fine[index][0]["indirect"])) for index in chosen]
+    pictures += [("4 times the bounce", shown(4 * fine[index][0]["indirect"])) for index in chosen]
     claim = "As its sender turns out of the view, the bounce fades to nothing without a jump"
     numbers = {
         "degrees": np.linspace(0, TOTAL, 2 * frames - 1).tolist(),
@@ -157,12 +151,12 @@ def _orbit(size: Size, degrees: float) -> tuple[Frame, float]:
     """The frame from there, and the mean radiance that the patch of floor before the yellow side reflects of it."""
     angle = np.radians(degrees)
     eye = 5.2 * np.sin(angle), 4.4, 0.5 + 5.2 * np.cos(angle)
-    camera = Camera(eye, (0, 0.25, 0.3), fov=30)
+    camera = Camera(eye, (0, 0.25, 0.3), fov=22)
     yellow = Instance(block((1.6, 0.8, 1.0), YELLOW, "box"), placed(0, -0.01, 0))
     ground = Instance(block((40, 0.2, 40), Material((0.75, 0.75, 0.75)), "ground"), placed(0, -0.2, 0))
     sun = DirectionalLight((-0.35, -0.6, -1.0), (3.0, 2.8, 2.5))
     scene = Scene((ground, yellow), (sun,), Environment.constant((0.12, 0.14, 0.17)), camera)
-    frame = shared_lab().render(scene, BOUNCE.replace(radius=0.8, senders="rays"), size=size)
+    frame = shared_lab().render(scene, BOUNCE.replace(radius=0.8, steps=1), size=size)
     x, y, z = np.moveaxis(world_positions(frame, View(camera, size, scene.bounds)), -1, 0)
     patch = frame.mask & (np.abs(x) < 0.5) & (np.abs(y) < 0.02) & (np.abs(z - 0.75) < 0.15)
     return frame, float(frame["indirect"][patch].mean())

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import small_scenes
 from small_scenes import box, floor, of, quad, world_positions
 
 import aolab
