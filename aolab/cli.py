@@ -289,10 +289,10 @@ def reproduce(
 ) -> None:
     """Draw a paper's figures and tables anew, and say whether the numbers hold the paper's claims."""
     from .command import parse_size
-    from .reproduce import reproduce_command
+    from .reproduce import reproduce as drawn
 
     found = []
-    for name, content in reproduce_command(paper, figure, folder, parse_size(size) if size else None):
+    for name, content in drawn(paper, figure, folder, parse_size(size) if size else None):
         found.append(content)
         if not as_json:
             print(f"{folder / name}.png: {'holds' if content['holds'] else 'DOES NOT HOLD'}: {content['claim']}")

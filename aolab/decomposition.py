@@ -1,4 +1,4 @@
-"""Telling errors apart: what of a module's error is noise, filter, screen border, and method."""
+"""Telling errors apart: what of a module's error is noise, filter, steps, layers, screen border, and method."""
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -18,10 +18,12 @@ from .scene import Scene
 
 CONVERGED = 64  # frames: noise falls to 1/8 of one frame's
 BACKGROUND = 153  # grey, in none of the colours of an error
+STEPS = 32  # along a direction: as good as a ray, in an image of a few hundred rows
+LAYERS = 4  # of depth: what lies behind them is left to the method
 MARGIN = 0.5  # of the image's height, drawn around it to know what lies off the screen
 
 # each part is the difference of two neighbours in this chain of renders, from the module's frame to the truth
-PARTS = ("sampling noise", "filter", "off-screen geometry", "hidden layers and method")
+PARTS = ("sampling noise", "filter", "few steps", "hidden layers", "off-screen geometry", "method")
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +32,12 @@ class Explanation:
 
     - `sampling noise`: the frame against the mean of many, both filtered;
     - `filter`: that mean, filtered against unfiltered;
-    - `off-screen geometry`: unfiltered, against the same with a margin drawn around the image;
-    - `hidden layers and method`: what remains against rays. One depth layer cannot tell the two apart yet.
+    - `few steps`: unfiltered, against the same with directions marched as densely as a ray;
+    - `hidden layers`: that, with the camera's one layer of depth against four, peeled;
+    - `off-screen geometry`: that, against the same with a margin drawn around the image;
+    - `method`: what remains against rays.
+
+    A part that the module has no parameter for is 0, and joins the next one.
 
     `share` of a part is its part of the squared error, Σ part · error / Σ error²: the shares add up to 1, and one that
     is negative makes up for another.
@@ -116,6 +122,8 @@ def explain(
     camera = camera or scene.camera
     assert camera is not None  # Scene frames itself
     bare = module.replace(filter="none")
+    marched = bare.replace(steps=max(STEPS, bare.steps)) if "steps" in type(module).model_fields else bare  # type: ignore[attr-defined]
+    layered = marched.replace(occluders="layers", layers=LAYERS) if module.occluders == "depth" else marched
     converged = {"seed": seed, "accumulate": frames, "camera": camera}
 
     frame = lab.render(scene, module, camera=camera, seed=seed)
@@ -126,7 +134,9 @@ def explain(
         frame[buffer],
         lab.render(scene, module, **converged)[buffer],
         lab.render(scene, bare, **converged)[buffer],
-        _with_margin(lab, scene, bare, camera, size, seed, frames)[buffer],
+        lab.render(scene, marched, **converged)[buffer],
+        lab.render(scene, layered, **converged)[buffer],
+        _with_margin(lab, scene, layered, camera, size, seed, frames)[buffer],
         truth[buffer],
     ]
     chain = [np.where(_like(frame.mask, values), values, np.nan).astype(np.float64) for values in chain]

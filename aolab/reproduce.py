@@ -14,39 +14,43 @@ from .papers import PAPERS
 from .papers.figure import Figure
 from .version import __version__
 
+LEAST_SIZE = (96, 54)  # pixels: in smaller pictures there are no pixels left of what some figures look at
 
-def figures(paper: str) -> dict[str, Callable[..., Figure]]:
-    """{name: function} of a paper's figures and tables. Raises `ParameterError` for an unknown paper."""
+
+def figures(paper: str, figure: str | None = None) -> dict[str, Callable[..., Figure]]:
+    """{name: function} of a paper's figures and tables, or of one of them.
+
+    Each function takes `size`, (width, height) in pixels of one picture, or of a table's largest measurement, and
+    has a default for it. Raises `ParameterError` for an unknown paper or figure.
+    """
     if paper not in PAPERS:
         raise ParameterError(f"no paper '{paper}'{suggestion(paper, PAPERS)}")
-    return import_module(f"{__package__}.papers.{paper}").FIGURES
-
-
-def reproduce(paper: str, figure: str | None = None, *, size: Size | None = None) -> Iterator[tuple[str, Figure]]:
-    """Draw `figure` of `paper`, or all of them, one after the other: (name, Figure).
-
-    `size` (width, height) is that of one picture, or of a table's largest measurement; None takes each figure's own.
-    Raises `ParameterError` for an unknown paper or figure, before anything is drawn.
-    """
-    known = figures(paper)
-    if figure is not None and figure not in known:
+    known: dict[str, Callable[..., Figure]] = import_module(f"{__package__}.papers.{paper}").FIGURES
+    if figure is None:
+        return known
+    if figure not in known:
         raise ParameterError(f"paper '{paper}' has no '{figure}' here{suggestion(figure, known)}")
-    arguments = {} if size is None else {"size": check_size(size)}
-    chosen = known if figure is None else {figure: known[figure]}
-    return ((name, draw(**arguments)) for name, draw in chosen.items())
+    return {figure: known[figure]}
 
 
-def reproduce_command(
-    paper: str, figure: str | None, folder: Path, size: Size | None
+def reproduce(
+    paper: str, figure: str | None, folder: Path, size: Size | None = None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Draw, and write FIGURE.png and FIGURE.json into `folder`, which is made; yields (name, the JSON's content)."""
-    drawn = reproduce(paper, figure, size=size)
+    """Draw a paper's figures, or one, and write FIGURE.png and FIGURE.json into `folder`, which is made if need be.
+
+    Yields (name, the JSON's content) as each is written. Raises `ParameterError` and `FileError` before the work.
+    """
+    chosen = figures(paper, figure)
+    arguments = {} if size is None else {"size": _checked(size)}
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"cannot make the folder {folder}: {error.strerror or error}") from error
-    check_writable(folder / f"{figure or 'figure'}.png")
-    for name, result in drawn:
+    for name in chosen:
+        for suffix in ("png", "json"):
+            check_writable(folder / f"{name}.{suffix}")
+    for name, draw in chosen.items():
+        result = draw(**arguments)
         content = {
             "paper": paper,
             "figure": name,
@@ -61,3 +65,11 @@ def reproduce_command(
         with replacing(folder / f"{name}.json") as file:
             file.write((json.dumps(content, indent=2, ensure_ascii=False, allow_nan=False) + "\n").encode())
         yield name, content
+
+
+def _checked(size: Size) -> Size:
+    if size[0] < LEAST_SIZE[0] or size[1] < LEAST_SIZE[1]:
+        raise ParameterError(
+            f"size = {size[0]}x{size[1]} is too small for a figure: at least {LEAST_SIZE[0]}x{LEAST_SIZE[1]}"
+        )
+    return check_size(size)

@@ -80,16 +80,20 @@ def _own_passes(frame: Frame) -> float:
 
 
 def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
-    """Whole frames of the largest scene, with one layer and one point a direction; overhead relative to SSAO.
+    """Whole frames of the largest scene, with one layer and one point a direction, beside the paper's figures.
 
+    The paper's percentages are the share of SSAO's frame rate that is lost, 1 - fps / fps_SSAO, and not the time that
+    is added, which is more; both are told. (Of the twelve printed ones, 0.2, 19.3 and 22.2 do not follow from the frame
+    rates printed beside them, which give -0.4, 18.8 and 42.1.)
     `size` stands for the paper's largest one, and the others are scaled with it. Every turn draws one frame of each
-    method, and the overhead is the median over the turns: what else the machine does meets all of them.
+    method, and the ratios are medians over the turns: what else the machine does meets all of them.
     """
     scene = load("atrium", detail=4)
     rows = [_row(scene, size, paper_size, directions, repeats) for paper_size, directions in PAPER]
-    claim = "Directional occlusion costs little over SSAO (at most 8.9 %), and one bounce at most 46.4 %"
-    heading = ["size", "N", "SSAO ms", "SSDO ms", "+%", "paper", "from its fps", "+ 1 bounce ms", "+%", "paper"]
-    heading.append("from its fps")
+    claim = "Of SSAO's frame rate, directional occlusion costs at most 8.9 %, and with one bounce 46.4 %"
+    heading = ["size", "N", "SSAO ms"]
+    for name in ("SSDO ms", "+ 1 bounce ms"):
+        heading += [name, "fps lost %", "paper", "time added %", "paper"]
     cells = [heading]
     for row in rows:
         do, bounce = row["directional_occlusion"], row["one_bounce"]
@@ -108,8 +112,11 @@ def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
         "renderer": context.renderer(),
         "machine": describe(),
     }
-    overheads = [(row["directional_occlusion"]["percent"], row["one_bounce"]["percent"]) for row in rows]
-    return Figure(table(cells, title=title), numbers, claim, all(a <= 8.9 and b <= 46.4 for a, b in overheads))
+    holds = all(
+        row["directional_occlusion"]["fps_lost_percent"] <= 8.9 and row["one_bounce"]["fps_lost_percent"] <= 46.4
+        for row in rows
+    )
+    return Figure(table(cells, title=title), numbers, claim, holds)
 
 
 def _row(scene: Scene, size: Size, paper_size: Size, directions: int, repeats: int) -> dict[str, Any]:
@@ -136,11 +143,12 @@ def _row(scene: Scene, size: Size, paper_size: Size, directions: int, repeats: i
     for name, percent, fps in zip(
         ("directional_occlusion", "one_bounce"), printed, (ssdo_fps, bounce_fps), strict=True
     ):
-        ratios = [own / ssao for own, ssao in zip(times[name], times["ssao"], strict=True)]
+        ratio = statistics.median(own / ssao for own, ssao in zip(times[name], times["ssao"], strict=True))
         row[name] = {
             "milliseconds": statistics.median(times[name]),
-            "percent": 100 * (statistics.median(ratios) - 1),
-            "paper_percent": percent,
-            "percent_of_the_papers_fps": 100 * (ssao_fps / fps - 1),
+            "fps_lost_percent": 100 * (1 - 1 / ratio),
+            "paper_fps_lost_percent": percent,
+            "time_added_percent": 100 * (ratio - 1),
+            "paper_time_added_percent": 100 * (ssao_fps / fps - 1),
         }
     return row

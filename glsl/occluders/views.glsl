@@ -62,8 +62,12 @@ bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
         vec2 uv = pixelAt(there, views_pixel_from_ray) * views_texel_size;
         vec4 z = depthsOf(k, uv);
         if (view_layers > 1) insideSolid = insideSolid || solidAt(z, there.z, thickness) >= 0;
-        if (z.x - there.z < depthBehind) {
-            depthBehind = z.x - there.z;
+        float behind = z.x - there.z;
+        // a texel's depth is its centre's, and P was lifted for the camera's pixels, not for these: where the camera has no
+        // say, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
+        if (!onScreen) behind += 2.0 * there.z / views_pixel_from_ray.x;
+        if (behind < depthBehind) {
+            depthBehind = behind;
             occluder.view = k;
             occluder.uv = uv;
             thereOfNearest = there;
