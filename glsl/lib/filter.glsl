@@ -1,8 +1,8 @@
 // Which neighbours belong to the same surface: what every geometry-aware filter asks.
 
-// A step off the tangent plane of more than 1 % of the viewing distance is another surface. At 45° and 720 rows a pixel
-// is 0.12 % wide, so the step is about 9 pixels: curved surfaces stay whole, a gap does not.
-const float PLANE_TOLERANCE = 0.01;
+// A step off the tangent plane of more than 0.2 % of the viewing distance is another surface. Of 0.1 to 2 % it had, with
+// 0.1 %, the least error against rays on the six scenes (ssao, 480×270 and 960×540); a pixel at 45° and 720 rows is 0.12 %.
+const float PLANE_TOLERANCE = 0.002;
 
 // How far the surface at depth `otherZ`, on a ray with `normalDotRay` = dot(centreNormal, ray), lies off the tangent plane
 // of the centre, on which dot(centreNormal, position) = `planeOffset`; 1 is the tolerance at the depth `centreZ`.

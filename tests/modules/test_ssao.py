@@ -6,6 +6,7 @@ import small_scenes
 from numpy.typing import NDArray
 
 import aolab
+from aolab.modules.base import auto_radius
 
 CAMERAS = {
     "above": aolab.Camera((0, 3, 6), (0, 0, 0)),
@@ -143,12 +144,11 @@ def test_thickness_keeps_a_far_foreground_from_casting_a_halo(lab):
     assert thick["visibility"][behind].min() < 0.9
 
 
-def test_auto_radius_is_a_tenth_of_the_scenes(lab, boxes):
+def test_the_automatic_radius_is_a_number_by_the_time_it_renders(lab, boxes):
     frame = lab.render(boxes, "ssao")
-    assert frame.info["parameters"]["radius"] == pytest.approx(0.1 * boxes.radius)
-    np.testing.assert_array_equal(
-        frame["visibility"], lab.render(boxes, "ssao", radius=0.1 * boxes.radius)["visibility"]
-    )
+    radius = frame.info["parameters"]["radius"]
+    assert radius == auto_radius(boxes)
+    np.testing.assert_array_equal(frame["visibility"], lab.render(boxes, "ssao", radius=radius)["visibility"])
 
 
 def test_nothing_off_the_screen_blocks(lab):
