@@ -43,9 +43,9 @@ def test_a_blocker_beside_the_image_is_off_screen_geometry():
 
 
 def test_noise_is_the_part_that_more_directions_cure(boxes, boxes_explained):
-    many = aolab.explain(boxes, "ssao", **{**SMALL, "directions": 128}).table()
+    many = aolab.explain(boxes, "ssao", **{**SMALL, "directions": 32}).table()
     few = boxes_explained.table()
-    assert many["sampling noise"]["rmse"] < 0.5 * few["sampling noise"]["rmse"]
+    assert many["sampling noise"]["rmse"] < 0.7 * few["sampling noise"]["rmse"]
     assert many["method"]["rmse"] == pytest.approx(few["method"]["rmse"], rel=0.2)
 
 
