@@ -116,7 +116,8 @@ def _direct(
 def _ambient(painter: Painter, buffers: Buffers, scene: Scene, view: View) -> Buffers:
     assert scene.environment is not None  # Scene fills it in
     coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
-    return painter.run(_AMBIENT, buffers, {**view.uniforms, "irradiance_sh": coefficients}, view.size)
+    uniforms = {**view.uniforms, "irradiance_sh": coefficients}
+    return painter.run(_AMBIENT, buffers, uniforms, view.size, {"occluded": "visibility" in buffers})
 
 
 def senders(
@@ -124,11 +125,13 @@ def senders(
 ) -> Buffers:
     """`sender`: what leaves each surface before any bounce, direct + ambient light; hidden ones join the occluders.
 
-    Of a hidden surface only the direct light is known: its occlusion was not estimated.
+    The occlusion of hidden surfaces was not estimated: the environment reaches them unhindered.
     """
     for suffix, hidden in occluders.hidden.items():
         lit = _direct(painter, hidden.surfaces, scene, hidden.view, shadows)
-        occluders.inputs[f"sender{suffix}"] = lit["direct"]
+        lit |= _ambient(painter, hidden.surfaces, scene, hidden.view)
+        sent = painter.run(_SENDER, lit, hidden.view.uniforms, hidden.view.size)
+        occluders.inputs[f"sender{suffix}"] = sent["sender"]
     return painter.run(_SENDER, buffers, view.uniforms, view.size)
 
 

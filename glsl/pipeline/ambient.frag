@@ -3,6 +3,8 @@
 
 #include "lib/sh.glsl"
 
+const bool occluded;  // multiply by `visibility`, where that is known
+
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
 uniform sampler2D visibility;
@@ -19,5 +21,6 @@ void main() {
 
     vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
     vec3 irradiance = max(shIrradiance(irradiance_sh, worldNormal), 0.0);  // 9 coefficients can ring below 0
-    ambient = vec4(surfaceAlbedo.rgb / 3.14159265358979 * irradiance * texelFetch(visibility, pixel, 0).r, 1.0);
+    float open = occluded ? texelFetch(visibility, pixel, 0).r : 1.0;
+    ambient = vec4(surfaceAlbedo.rgb / 3.14159265358979 * irradiance * open, 1.0);
 }
