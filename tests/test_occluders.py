@@ -87,6 +87,24 @@ def test_nothing_is_drawn_for_kinds_that_are_not_chosen(lab, boxes, kind):
 # --- layers
 
 
+@pytest.mark.parametrize(
+    ("layers", "at", "layer"),
+    [
+        ((-1, -2, -4, -6), (-0.9, -1.1, -1.9, -2.1, -3.9, -4.1, -5.9, -6.1), (-1, 0, 1, -1, -1, 2, 3, -1)),
+        ((-1, -2, -4, -np.inf), (-1.1, -3, -4.1, -4.6), (0, -1, 2, -1)),  # half a unit thick
+        ((-1, -np.inf, -np.inf, -np.inf), (-0.9, -1.4, -1.6), (-1, 0, -1)),
+        ((-np.inf, -np.inf, -np.inf, -np.inf), (-1, -1e9), (-1, -1)),
+    ],
+    ids=["two solids", "the second open", "one sheet", "background"],
+)
+def test_a_point_is_inside_the_first_solid_or_the_second(glsl, layers, at, layer):
+    """And its occluder is the side of it that is nearer."""
+    include = 'lib/space.glsl"\n#include "lib/solids.glsl'
+    rows = np.pad(np.array(at, float)[:, None], ((0, 0), (0, 3)))
+    found = glsl(include, "result.x = float(solidAt(layers, x.x, 0.5));", rows, layers=layers)[:, 0]
+    np.testing.assert_array_equal(found, layer)
+
+
 def slab_before_a_wall() -> aolab.Scene:
     """A thin slab floating before a wall, both closed; between them is room."""
     wall = box((-4, -4, -1), (4, 4, 0))
@@ -305,16 +323,24 @@ def test_blockers_off_the_screen_count(lab):
     assert views < 0.35 * depth
 
 
-def test_senders_off_the_screen_contribute(lab):
-    """A lit red wall beside the picture colours the floor in it."""
-    ground, wall = box((0, -0.5, -3), (4, 0, 3)), box((-0.5, -0.5, -3), (0, 2.5, 3), RED)
-    sun = DirectionalLight((-1, -1, 0), (3.0, 3.0, 3.0))
-    scene = of(ground, wall, camera=BESIDE_THE_WALL, lights=(sun,), sky=DARK)
+@pytest.mark.parametrize("side", [1, -1], ids=["left", "right"])
+def test_senders_off_the_screen_contribute(lab, side):
+    """A lit red wall beside the picture, on its left or right, colours the floor in it."""
+
+    def mirrored(low, high, material=small_scenes.WHITE):
+        corners = np.array((low, high)) * (side, 1, 1)
+        return box(corners.min(axis=0), corners.max(axis=0), material)
+
+    meshes = mirrored((0, -0.5, -3), (4, 0, 3)), mirrored((-0.5, -0.5, -3), (0, 2.5, 3), RED)
+    sun = DirectionalLight((-side, -1, 0), (3.0, 3.0, 3.0))
+    x = side * BESIDE_THE_WALL.eye[0]
+    camera = replace(BESIDE_THE_WALL, eye=(x, 3, 0), target=(x, 0, 0))
+    scene = of(*meshes, camera=camera, lights=(sun,), sky=DARK)
     settings = {"radius": 1.5, "bounces": 1, "senders": "rays", "view_scale": 1.0, **CONVERGED}
     frame, one_view = (lab.render(scene, "ssdo", occluders=kind, **settings) for kind in ("views", "depth"))
     truth = aolab.reference(scene, size=frame.size, like=aolab.SSDO(radius=1.5), buffers="indirect", cache=False)
     assert (one_view["indirect"] == 0).all()
-    assert rms(frame["indirect"] - truth["indirect"]) < 0.35 * rms(truth["indirect"])
+    assert rms(frame["indirect"] - truth["indirect"]) < 0.45 * rms(truth["indirect"])
 
 
 @pytest.mark.parametrize(
