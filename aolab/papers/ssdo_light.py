@@ -190,24 +190,9 @@ def _beside_truth(scene: Scene, size: Size, rays: int) -> tuple[dict[str, Frame]
     modules = {"none": Unoccluded(), "SSAO": OCCLUSION, "SSDO": DIRECTIONAL}
     modules |= {f"SSDO + 1 bounce of {kind}": BOUNCE.replace(senders=kind) for kind in ("patches", "rays")}
     frames = {name: _drawn(scene, module, size) for name, module in modules.items()}
-    truth = reference(scene, size=size, like=DIRECTIONAL, rays=rays, buffers=("radiance",))
-    # the reference's senders are lit by the lights alone; ours by the environment too, whose bounce is that of lights
-    skylit = scene.replace(lights=_as_lights(scene))
-    sky = reference(skylit, size=size, like=DIRECTIONAL, rays=max(rays // 4, 2), buffers=("indirect",))
-    radiance = truth["radiance"] + sky["indirect"]
+    radiance = reference(scene, size=size, like=DIRECTIONAL, rays=rays, buffers=("radiance",))["radiance"]
     mask = frames["none"].mask
     return frames, {name: rmse(frame["radiance"], radiance, mask) for name, frame in frames.items()}, shown(radiance)
-
-
-def _as_lights(scene: Scene) -> tuple[DirectionalLight, ...]:
-    """The environment as 32 suns: enough for what has been reflected once."""
-    assert scene.environment is not None
-    radiance, directions, solid_angles = averaged(scene.environment.radiance, (4, 8))
-    irradiance = (radiance * solid_angles[..., None]).reshape(-1, 3)
-    return tuple(
-        DirectionalLight(tuple(-direction), tuple(color))
-        for direction, color in zip(directions.reshape(-1, 3), irradiance, strict=True)
-    )
 
 
 # --- figure 14

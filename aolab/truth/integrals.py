@@ -121,10 +121,21 @@ def _closed_albedo(sample: Sample) -> np.ndarray:
 
 
 def _sender(sample: Sample) -> np.ndarray:
-    """Radiance of what blocks, lit by the lights; as much of it as blocks."""
+    """Radiance of what blocks, lit by the lights and by the environment; as much of it as blocks."""
     positions, normals = sample.hit_surface
-    light = irradiance(sample.setting.world, sample.setting.lights, positions, normals)
-    return sample.at_hits((1 - sample.open[sample.blocked, None]) * sample.hit_albedo / np.float32(np.pi) * light)
+    light = irradiance(sample.setting.world, sample.setting.lights, positions, normals) / np.float32(np.pi)
+    light += _skylight(sample, positions, normals)
+    return sample.at_hits((1 - sample.open[sample.blocked, None]) * sample.hit_albedo * light)
+
+
+def _skylight(sample: Sample, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """The environment's irradiance / π at `positions` (n, 3), by one ray each, however far it goes."""
+    setting = sample.setting
+    if not len(positions) or not setting.environment.radiance.any():
+        return np.zeros_like(positions)
+    directions = next(strata(2)).directions(frames(normals), sample.random)
+    open = setting.world.first_hit(positions, directions, np.inf).triangle < 0
+    return np.where(open[:, None], environment_radiance(setting.environment, directions), np.float32(0))
 
 
 def _path(sample: Sample) -> np.ndarray:

@@ -49,7 +49,7 @@ def path_traced(
     - `radiance`: everything, over the environment; paths of at most `max_depth` edges: 2 is direct light (of the
       environment too), 3 adds one bounce, -1 is all of them; `image`: the same, tone mapped as a render, sRGB uint8;
     - `direct`, `ambient`, `indirect`: what `aolab.reference(radius=None)` calls so: direct light of the lights, direct
-      light of the environment, and one bounce of the lights, whatever `max_depth` is. 0 in the background.
+      light of the environment, and one bounce of both, whatever `max_depth` is. 0 in the background.
 
     Besides those there are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
     pixel (rounded up to a full grid) are taken for each light and for the environment, which are rendered one by one
@@ -124,7 +124,8 @@ def _parts(buffer: str, scene: Scene, max_depth: int) -> list[tuple[int, Image]]
     if buffer == "ambient":
         return [(1, Image(i, 2, background=False)) for i in sky]
     if buffer == "indirect":
-        return [(1, Image(i, 3, background=False)) for i in lights] + [(-1, image) for _, image in direct]
+        everywhere = (*lights, *sky)
+        return [(sign, Image(i, depth, background=False)) for i in everywhere for sign, depth in ((1, 3), (-1, 2))]
     everything = [(1, Image(i, max_depth, background=False)) for i in lights]
     return everything + [(1, Image(i, max_depth, background=True)) for i in sky]
 

@@ -64,8 +64,8 @@ def reference(
     - `visibility`: mean of the openness 1 - blocked; `standard_error`: its standard deviation, from pairs of
       independent rays in each stratum (`strata`);
     - `ambient`: albedo/π × the environment's radiance in the open directions, times their openness;
-    - `indirect`: albedo/π × the light that blockers reflect, as far as they block: diffuse, lit by the lights, with
-      shadows: one bounce;
+    - `indirect`: albedo/π × the light that blockers reflect, as far as they block: one diffuse bounce of the lights
+      and of the environment, with their shadows;
     - `bent_normal`: Σ V ω / Σ V over the same rays, world space; its length is 2/3 where all is open;
     - `sh0` .. `sh3`: c_i = ∫ V y_i cosθ dω, four a buffer, the basis of `aolab.spherical_harmonics`, world space;
     - `obscurance`: O = (1/π) ∫ μ(d) cosθ dω with the `measure` μ (classical, linear, sqrt, exponential with
