@@ -12,9 +12,13 @@ from .version import __version__
 
 # extra: (module to import, what it is for, how to get it)
 _EXTRAS = {
-    "truth": ("embreex", "the ray-traced reference and error measures", 'pip install "aolab[truth]"'),
-    "mitsuba": ("mitsuba", "a path tracer as second opinion", 'pip install "aolab[mitsuba]"'),
-    "tune": ("optuna", "fitting parameters", 'pip install "aolab[tune]"'),
+    "truth": (
+        "embreex",
+        "the ray-traced reference and error measures",
+        "pip install embreex matplotlib flip-evaluator",
+    ),
+    "mitsuba": ("mitsuba", "a path tracer as second opinion", "pip install mitsuba"),
+    "tune": ("optuna", "fitting parameters", "pip install optuna"),
     "pyrender": ("pyrender", "pyrender scenes as input", "pip install scikit-robot-pyrender"),
     "jupyter": ("IPython", "frames that show themselves in notebooks", "pip install jupyterlab"),
 }

@@ -240,7 +240,7 @@ def quality_command(scene: str, output: Path, **how: Any) -> Curve:
     try:
         from .quality_picture import draw
     except ImportError as error:
-        raise Error(f'the picture needs matplotlib: pip install "aolab[truth]" ({error})') from error
+        raise Error(f"the picture needs matplotlib: pip install matplotlib ({error})") from error
     measured = curve(scene, **how)
     with replacing(output) as file:
         draw(measured).savefig(file, format="png")

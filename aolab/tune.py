@@ -121,7 +121,7 @@ def _optuna() -> Any:
     try:
         import optuna
     except ImportError as error:
-        raise Error(f'tuning needs Optuna: pip install "aolab[tune]" ({error})') from error
+        raise Error(f"tuning needs Optuna: pip install optuna ({error})") from error
     return optuna
 
 

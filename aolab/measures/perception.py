@@ -44,7 +44,7 @@ def flip_map(a: np.ndarray, b: np.ndarray, *, hdr: bool) -> np.ndarray:
         import flip_evaluator
     except ImportError as error:
         raise ParameterError(
-            f'FLIP needs flip-evaluator: pip install "aolab[truth]", or flip=False ({error})'
+            f"FLIP needs flip-evaluator: pip install flip-evaluator, or flip=False ({error})"
         ) from error
 
     test, reference = (
