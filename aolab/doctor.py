@@ -14,7 +14,7 @@ from .version import __version__
 _EXTRAS = {
     "truth": (
         "embreex",
-        "the ray-traced reference and error measures",
+        "the ray-traced truth and error measures",
         "pip install embreex matplotlib flip-evaluator",
     ),
     "mitsuba": ("mitsuba", "a path tracer as second opinion", "pip install mitsuba"),

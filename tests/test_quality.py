@@ -172,5 +172,5 @@ def test_command_refuses_before_the_work(tmp_path: Path, monkeypatch: pytest.Mon
         quality_command("boxes", tmp_path / "curve.png")
     monkeypatch.delitem(sys.modules, "aolab.quality_picture", raising=False)
     monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    with pytest.raises(Error, match=r'pip install "aolab\[truth\]"'):
+    with pytest.raises(Error, match="pip install matplotlib"):
         quality_command("boxes", tmp_path / "other.png")

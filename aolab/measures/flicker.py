@@ -11,6 +11,7 @@ from ..camera import Camera
 from ..errors import ParameterError
 from ..frame import Frame
 from ..view import ray_scale_offset
+from .regions import nearness
 
 SAME_SURFACE = 0.01  # share of the distance: the filters' (PLANE_TOLERANCE in glsl/lib/filter.glsl)
 
@@ -31,7 +32,7 @@ def flicker(frames: Sequence[Frame], buffer: str = "visibility") -> Flicker:
     """Mean temporal difference after re-projection, of consecutive frames with their own cameras.
 
     Each surface pixel is looked for in the frame before, by `viewZ` and the two cameras; it is compared, bilinearly,
-    if the four pixels there show the same surface. Objects must stand still: a point that moves is another point.
+    if the pixels there show the same surface. Objects must stand still: a point that moves is another point.
     What shading truly depends on the camera (in screen space: what is on the screen) counts as flicker too.
     Raises `ParameterError` for fewer than two frames, or frames of different sizes.
     """
@@ -66,13 +67,15 @@ def _difference(before: Frame, now: Frame, buffer: str) -> np.ndarray:
     # a camera that stands still looks at its own pixels: rounding must not fetch a neighbour across an edge
     column, row = (np.where(np.abs(at - np.rint(at)) < 1e-4, np.rint(at), at) for at in (column, row))
     inside = (there_pos[2] < 0) & (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)
-    low = np.floor(np.where(inside, row, 0)).astype(int), np.floor(np.where(inside, column, 0)).astype(int)
-    high = np.ceil(np.where(inside, row, 0)).astype(int), np.ceil(np.where(inside, column, 0)).astype(int)
-    four = np.stack([before["viewZ"][r, c] for r in (low[0], high[0]) for c in (low[1], high[1])])
-    seen = inside & (np.abs(four + distance) <= SAME_SURFACE * distance).all(axis=0)
+    # nearness is linear over the image of a plane: interpolated, it is the same surface's, or a mixture of two
+    found = _bilinear(nearness(before["viewZ"]), np.where(inside, row, 0), np.where(inside, column, 0))
+    seen = inside & (np.abs(found * distance - 1) <= SAME_SURFACE)
 
     values = [frame[buffer].astype(np.float64).reshape(height, width, -1) for frame in (before, now)]
-    at = np.stack([row[seen], column[seen]])
-    background = np.nan_to_num(values[0])  # its weight is 0 or it is not seen, but 0 · NaN is NaN
-    old = np.stack([map_coordinates(one, at, order=1, mode="nearest") for one in np.moveaxis(background, -1, 0)], -1)
+    known = np.nan_to_num(values[0])  # NaN in the background, whose weight here is next to none
+    old = np.stack([_bilinear(one, row[seen], column[seen]) for one in np.moveaxis(known, -1, 0)], axis=-1)
     return np.abs(values[1][rows[seen], columns[seen]] - old).mean(axis=-1)
+
+
+def _bilinear(values: np.ndarray, row: np.ndarray, column: np.ndarray) -> np.ndarray:
+    return map_coordinates(values, np.stack([row, column]), order=1, mode="nearest")

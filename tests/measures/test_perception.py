@@ -77,11 +77,11 @@ def test_a_missing_package_is_named_with_the_fix(monkeypatch, noise):
     """What an import finds as None is not installed."""
     monkeypatch.setitem(sys.modules, "flip_evaluator", None)
     found = {"visibility": noise}
-    with pytest.raises(aolab.ParameterError, match=r"aolab\[truth\].*flip=False"):
+    with pytest.raises(aolab.ParameterError, match=r"pip install flip-evaluator, or flip=False"):
         compare(found, found)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.delitem(sys.modules, "aolab.measures.pictures", raising=False)
-    with pytest.raises(aolab.ParameterError, match=r"matplotlib: pip install .aolab\[truth\]"):
+    with pytest.raises(aolab.ParameterError, match="pip install matplotlib"):
         compare(found, found, flip=False).picture()
 
 
