@@ -49,17 +49,18 @@ void main() {
             Occluder occluder;
             vec3 samplePos = viewPos + way * ((float(j) + offset) / float(steps));
             bool hit = isBlocked(samplePos, thickness * radius, occluder);
-            if (!blocked) first = occluder;  // the first one along the way hides the others
+            if (hit && !blocked) first = occluder;  // the first one along the way hides the others
             blocked = blocked || hit;
         }
         if (!blocked) continue;
         vec3 toSender = first.viewPos - viewPos;
         float squaredDistance = max(dot(toSender, toSender), 1e-20);
         float facing = dot(occluderNormal(first), -toSender);  // d cosθ_s
-        float share = facing > 0.0 ? 1.0 : 0.0;
+        float rising = dot(normal, toSender);                  // d cosθ_r
+        float share = facing > 0.0 && rising > 0.0 ? 1.0 : 0.0;
         if (patches) {
             float clamped = max(squaredDistance, distance_clamp * distance_clamp);
-            share *= radius * radius * max(dot(normal, toSender), 0.0) * facing / (squaredDistance * clamped);
+            share *= radius * radius * rising * facing / (squaredDistance * clamped);
         }
         sum += occluderRadiance(first) * share;
     }

@@ -55,5 +55,5 @@ void main() {
         light += openness * texture(prefiltered_environment, octahedralUv(worldFrame * kernel[i].xyz)).rgb;
         open += openness;
     }
-    irradiance = vec4(PI * light, open) / float(directions);
+    irradiance = min(vec4(PI * light, open) / float(directions), 65504.0);  // the target's largest number
 }
