@@ -30,7 +30,9 @@ def cosine_hemisphere(count: int, seed: int, falloff: float = 0.0) -> np.ndarray
     elevation = (index + (0.5 if seed == 0 else shift[0])) / count
     azimuth = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
     offset = (radical_inverse(index, 3) + shift[2]) % 1
-    reach = np.sqrt(1 - falloff * ((radical_inverse(index, 5) + shift[3]) % 1))
+    # the inverse of smoothstep: t² (3 - 2t) = y at t = 1/2 - sin(asin(1 - 2y) / 3)
+    faded = 0.5 - np.sin(np.arcsin(1 - 2 * ((radical_inverse(index, 5) + shift[3]) % 1)) / 3)
+    reach = 1 - falloff + falloff * faded
     r = np.sqrt(elevation)
     direction = np.stack([r * np.cos(azimuth), r * np.sin(azimuth), np.sqrt(1 - elevation)], axis=1)
     kernel = np.concatenate([direction * reach[:, None], offset[:, None]], axis=1).astype(np.float32)
@@ -41,7 +43,9 @@ def cosine_hemisphere(count: int, seed: int, falloff: float = 0.0) -> np.ndarray
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
     """How much an occluder counts, in [0, 1], at `squared_distance` in squared radii.
 
-    It fades over the outer share `falloff` of the squared radius: 0 is a hard edge (occlusion within a radius), 1 is
-    the 1 - d²/R² of HBAO (Bavoil, Sainz and Dimitrov 2008).
+    It fades by a smoothstep over the outer share `falloff` of the radius, as SSDO's occluders do near the hemisphere's
+    border (Ritschel, Grosch and Seidel 2009, section 7.2); 0 is a hard edge: occlusion within a radius.
     """
-    return np.clip((1 - squared_distance) / max(falloff, 1e-4), 0, 1)
+    width = max(falloff, 1e-4)
+    t = np.clip((np.sqrt(squared_distance) - (1 - width)) / width, 0, 1)
+    return 1 - t * t * (3 - 2 * t)

@@ -21,6 +21,8 @@ from aolab.gl.program import Programs
 from aolab.gl.texture import Pool
 from aolab.passes import Pass
 
+os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
+
 CHECKOUT = Path(__file__).parents[1]
 
 

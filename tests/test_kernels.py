@@ -46,8 +46,9 @@ def test_the_reach_is_within_an_occluders_distance_as_often_as_it_counts(falloff
 def test_influence_is_a_hard_edge_or_fades_to_it():
     squared = np.array([0.0, 0.5, 0.999, 1.0, 2.0])
     np.testing.assert_array_equal(influence(squared, 0), [1, 1, 1, 0, 0])
-    np.testing.assert_allclose(influence(squared, 1), [1, 0.5, 0.001, 0, 0], atol=1e-12)  # Bavoil et al. 2008
-    np.testing.assert_allclose(influence(squared, 0.5), [1, 1, 0.002, 0, 0], atol=1e-12)
+    halfway = np.array([0.0, 0.25, 0.5625, 1.0, 2.0])  # distances 0, 1/2, 3/4, 1
+    np.testing.assert_allclose(influence(halfway, 1), [1, 0.5, 0.15625, 0, 0], atol=1e-12)  # 1 - t² (3 - 2t)
+    np.testing.assert_allclose(influence(halfway, 0.5), [1, 1, 0.5, 0, 0], atol=1e-12)
 
 
 def test_offsets_fill_one_step_evenly():

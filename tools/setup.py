@@ -6,6 +6,7 @@
 
 from __future__ import annotations  # an older Python must get as far as the sentence that refuses it
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -79,6 +80,17 @@ def require_system() -> None:
         sys.exit(explain(packages))
 
 
+def offer_libatomic() -> None:
+    """Mitsuba's wheel needs it and does not bring it; without it the tests of the second opinion are skipped."""
+    as_root = become_root()
+    if sys.platform != "linux" or as_root is None or not shutil.which("apt-get"):
+        return
+    try:
+        ctypes.CDLL("libatomic.so.1")
+    except OSError:
+        apt_install(["libatomic1"], as_root)
+
+
 def make_venv() -> None:
     works = VENV_PYTHON.exists() and subprocess.run([VENV_PYTHON, "-c", "import pip"], stderr=subprocess.DEVNULL)
     if not works or works.returncode:  # none, half made, or left over from a Python that is gone
@@ -105,6 +117,8 @@ def main(stage: str) -> None:
         pip_install("--editable", ".[truth]")
     else:
         print(f"installing the {stage} tools into .venv", flush=True)
+        if stage == "dev":
+            offer_libatomic()
         pip_install("pip>=25.1")  # the first that knows --group
         extras = "[truth,tune,mitsuba]" if stage == "dev" else "[truth]"  # the tests try every extra for real
         pip_install("--group", stage, "--editable", f".{extras}")

@@ -84,8 +84,10 @@ class Geometry:
 
     def _use_material(self, mesh: Mesh, program: Program) -> None:
         material = mesh.material
-        program.uniforms["base_color"].value = (*material.base_color, material.alpha)
-        program.uniforms["alpha_cutoff"].value = -1.0 if material.alpha_cutoff is None else material.alpha_cutoff
+        cutoff = -1.0 if material.alpha_cutoff is None else material.alpha_cutoff
+        for name, value in {"base_color": (*material.base_color, material.alpha), "alpha_cutoff": cutoff}.items():
+            if name in program.uniforms:  # a compiler may find that an edited shader does not need it
+                program.uniforms[name].value = value
         texture = self._white_texture() if material.texture is None else self._texture(material.texture)
         texture.use(0)
 

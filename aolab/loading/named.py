@@ -92,10 +92,10 @@ def _import(path: Path, changed_ns: int) -> FunctionType:
     """The scene function; imported once per change of its file, so that meshes the scene keeps stay on the GPU."""
     specification = importlib.util.spec_from_file_location(f"aolab_scenes_{path.stem}_{changed_ns}", path)
     assert specification is not None
-    assert specification.loader is not None
     module = importlib.util.module_from_spec(specification)
     try:
-        specification.loader.exec_module(module)
+        # not from a .pyc, which an edit of the same length in the same second would leave valid
+        exec(compile(path.read_bytes(), str(path), "exec"), module.__dict__)
     except Exception as error:
         raise FileError(f"scene '{path.stem}' ({path}) cannot be imported: {type(error).__name__}: {error}") from error
     function = getattr(module, path.stem, None)

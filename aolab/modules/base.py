@@ -34,7 +34,7 @@ Falloff = Annotated[
     Field(
         ge=0,
         le=1,
-        description="Outer share of the squared radius over which occluders fade out; 0 is a hard edge.",
+        description="Outer share of the radius over which occluders fade out, by a smoothstep; 0 is a hard edge.",
     ),
 ]
 

@@ -57,7 +57,7 @@ def reference(
     meets that triangle and is blocked. All triangles block, from both sides; holes of cut-out textures do not.
 
     `radius` (scene units; None is unlimited) and `falloff` mean what they mean for the modules: a hit at distance d
-    blocks by clamp((1 - d²/radius²) / falloff, 0, 1). `like` takes both from a module instead.
+    blocks by 1 - smoothstep(1 - falloff, 1, d/radius). `like` takes both from a module instead.
 
     `buffers` chooses what is computed, and what it costs. Besides viewZ, viewNormal and albedo, which are the render's:
 

@@ -55,9 +55,10 @@ def wall_visibility(distance: NDArray, radius: float, falloff: float) -> NDArray
 
     Cosine-distributed directions are uniform over the unit disc (Nusselt's analogue), and a ray of length ρ meets the
     wall where its disc coordinate towards it is over c = distance / ρ: the blocked share is a circular segment,
-    (arccos c - c √(1 - c²)) / π. The reach ρ = radius √(1 - falloff ξ) is averaged over ξ in [0, 1].
+    (arccos c - c √(1 - c²)) / π. The reach ρ, which smoothstep leaves to chance, is averaged over ξ in [0, 1].
     """
-    reach = radius * np.sqrt(1 - falloff * (np.arange(400) + 0.5) / 400)
+    xi = (np.arange(400) + 0.5) / 400
+    reach = radius * (1 - falloff + falloff * (0.5 - np.sin(np.arcsin(1 - 2 * xi) / 3)))
     c = np.clip(distance[..., None] / reach, 0, 1)
     return 1 - ((np.arccos(c) - c * np.sqrt(1 - c * c)) / np.pi).mean(axis=-1)
 

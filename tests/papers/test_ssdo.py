@@ -92,7 +92,7 @@ def test_fig6_peeled_layers_have_the_ray_traced_shadow(shadows):
 
 @pytest.mark.parametrize("what", ["shadow_of_the_hidden_column", "bounce_of_the_hidden_column"])
 def test_fig7_what_is_hidden_takes_part_with_more_views_and_not_without(draw, what):
-    figure = draw("fig7", size=(112, 63), rays=32)
+    figure = draw("fig7", size=(160, 90), rays=32)
     shares = figure.numbers[what]
     assert shares["a single view"] == 0
     assert shares["four more views"] == pytest.approx(1, abs=0.35)
