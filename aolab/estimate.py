@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from . import filters, surfaces
+from . import filters
 from .draw import Buffers, Painter
 from .modules import Module
 from .occluders import Occluders
@@ -13,7 +13,10 @@ from .view import View
 
 @dataclass(frozen=True)
 class Run:
-    """What all estimates of one frame share. `inputs` are textures beside the surfaces; `seeds` are averaged over."""
+    """What all estimates of one frame share.
+
+    `inputs` are textures beside the surfaces; `seeds` are averaged over; `small` is the G-buffer at the module's scale.
+    """
 
     painter: Painter
     module: Module
@@ -21,6 +24,7 @@ class Run:
     inputs: Buffers
     view: View
     seeds: range
+    small: Buffers
 
 
 def estimate(run: Run, what: Estimate, large: Buffers) -> Buffers:
@@ -29,7 +33,7 @@ def estimate(run: Run, what: Estimate, large: Buffers) -> Buffers:
     small, small_view = large, run.view
     if module.scale < 1:
         small_view = run.view.scaled(module.scale)
-        small = {**large, **surfaces.shrink(painter, large, run.view, small_view)}
+        small = {**large, **run.small}
     if len(run.seeds) == 1:
         formats = dict(what.outputs)
         raw = _passes(run, what, small, small_view, run.seeds[0])

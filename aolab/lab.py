@@ -119,7 +119,9 @@ class Lab:
         buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
         stage = Stage(painter, self._geometry, self._depth, scene, view)
         occluders = KINDS[module.occluders](stage, module, buffers)
-        run = Run(painter, module, occluders, self._module_inputs(scene, module), view, range(seed, seed + frames))
+        small = surfaces.shrink(painter, buffers, view, view.scaled(module.scale)) if module.scale < 1 else {}
+        inputs = self._module_inputs(scene, module)
+        run = Run(painter, module, occluders, inputs, view, range(seed, seed + frames), small)
         buffers |= estimate(run, module.estimate(), buffers)
         buffers |= lighting.light(painter, buffers, scene, view, shadows, module, occluders)
         if bounce := module.bounce():

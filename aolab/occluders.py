@@ -17,7 +17,7 @@ from .mesh import Mesh
 from .modules import Module
 from .passes import Pass
 from .scene import Scene
-from .surfaces import BACKGROUND_Z, G_BUFFER, DepthTargets, g_buffer
+from .surfaces import G_BUFFER, DepthTargets, g_buffer
 from .view import View, matrix_bytes
 
 
@@ -149,26 +149,12 @@ def _pack(stage: Stage, nearest: moderngl.Texture, behind: list[Buffers]) -> Buf
 
 def _peel(stage: Stage, nearer: moderngl.Texture, with_materials: bool) -> Buffers | None:
     """The G-buffer of what lies behind `nearer` (viewZ), or None where nothing does. Normals are the mesh's own."""
-    gl, painter, view = context.get(), stage.painter, stage.view
-    names = G_BUFFER if with_materials else {"viewZ": G_BUFFER["viewZ"]}
-    buffers = {name: painter.take(view.size, format) for name, format in names.items()}
-    program = painter.programs.get("pipeline/gbuffer.frag", {"peel": True}, vertex="pipeline/gbuffer.vert")
-    program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
-    painter.bind_unit(program, "base_texture", 0)
-    painter.bind_unit(program, "nearerZ", 1)
-    nearer.use(1)
-    framebuffer = painter.pool.framebuffer(list(buffers.values()), stage.depth.of(view.size))
-    drawn = gl.query(samples=True)
-    with painter.timer.measure("peel"):
-        framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
-        painter.pool.framebuffer([buffers["viewZ"]]).clear(red=BACKGROUND_Z)
-        framebuffer.use()
-        gl.enable_only(moderngl.DEPTH_TEST)
-        with drawn:
-            stage.geometry.draw(stage.scene, program)
-        gl.enable_only(moderngl.NOTHING)
+    formats = G_BUFFER if with_materials else {"viewZ": G_BUFFER["viewZ"]}
+    drawn = context.get().query(samples=True)
+    with drawn:
+        buffers = g_buffer(stage.painter, stage.geometry, stage.depth, stage.scene, stage.view, "peel", nearer, formats)
     if drawn.samples == 0:
-        painter.give_back(buffers)
+        stage.painter.give_back(buffers)
         return None
     return buffers
 

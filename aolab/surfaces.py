@@ -1,5 +1,7 @@
 """Surfaces: what the camera sees, before any light (the G-buffer), and its smaller copy."""
 
+from collections.abc import Mapping
+
 import moderngl
 import numpy as np
 
@@ -34,15 +36,29 @@ class DepthTargets:
 
 
 def g_buffer(
-    painter: Painter, geometry: Geometry, depth: DepthTargets, scene: Scene, view: View, name: str = "g_buffer"
+    painter: Painter,
+    geometry: Geometry,
+    depth: DepthTargets,
+    scene: Scene,
+    view: View,
+    name: str = "g_buffer",
+    nearer: moderngl.Texture | None = None,
+    formats: Mapping[str, str] = G_BUFFER,
 ) -> Buffers:
-    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F); `name` is for the timings."""
+    """Draw the scene's viewZ (R32F, background -inf), viewNormal and albedo (RGBA16F), or the first of these only.
+
+    `name` is for the timings. With `nearer` (viewZ), what lies behind that layer, with the mesh's own normals.
+    """
     gl = context.get()
-    buffers = {name: painter.take(view.size, format) for name, format in G_BUFFER.items()}
-    program = painter.programs.get("pipeline/gbuffer.frag", {"peel": False}, vertex="pipeline/gbuffer.vert")
+    buffers = {name: painter.take(view.size, format) for name, format in formats.items()}
+    peel = nearer is not None
+    program = painter.programs.get("pipeline/gbuffer.frag", {"peel": peel}, vertex="pipeline/gbuffer.vert")
     # set a mesh at a time, by Geometry.draw
     program.set({**view.uniforms, "base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
     painter.bind_unit(program, "base_texture", 0)
+    if nearer is not None:
+        painter.bind_unit(program, "nearerZ", 1)
+        nearer.use(1)
     framebuffer = painter.pool.framebuffer(list(buffers.values()), depth.of(view.size))
     with painter.timer.measure(name):
         framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
