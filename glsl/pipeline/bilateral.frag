@@ -2,19 +2,17 @@
 // tangent plane and by the normal. The window is 9 wide with half weights at its ends: symmetric, and still every set of
 // the 4×4 interleaved pattern is counted equally, so that the pattern cancels on a plane.
 // S3HO (2012): "geometry-aware 8×8 bilateral (weights: distance and normal)".
-// Inputs: source (any channels), viewZ, viewNormal. Output: filtered.
+// Inputs: sources (lib/sources.glsl), viewZ, viewNormal. Outputs: results, the sources filtered.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/sources.glsl"
 
 const bool vertical;
 
-uniform sampler2D source;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
-
-out vec4 filtered;
 
 const int REACH = 4;
 
@@ -22,7 +20,8 @@ void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(viewZ, 0) - 1;
     float centreZ = texelFetch(viewZ, pixel, 0).r;
-    filtered = texelFetch(source, pixel, 0);
+    mat4 sum = sourcesAt(pixel);
+    writeResults(sum);
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
@@ -31,7 +30,6 @@ void main() {
     float planeOffset = normalDotRay * -centreZ;
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
-    vec4 sum = filtered;
     float weights = 1.0;
     for (int i = -REACH; i <= REACH; ++i) {
         if (i == 0) continue;
@@ -41,9 +39,9 @@ void main() {
         float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
         float weight = (abs(i) == REACH ? 0.5 : 1.0) * max(1.0 - plane * plane, 0.0) * pow(alike, 8.0);
         if (weight > 0.0) {  // the background's plane distance is infinite
-            sum += weight * texelFetch(source, other, 0);
+            sum += weight * sourcesAt(other);
             weights += weight;
         }
     }
-    filtered = sum / weights;
+    writeResults(sum / weights);
 }

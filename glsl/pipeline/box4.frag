@@ -1,24 +1,23 @@
 // The mean over 4 pixels in a row or column that lie on the same surface; twice, it is the mean over 4×4: every set of
 // the interleaved pattern once (Umenhoffer et al. 2009, section 4.2).
-// Inputs: source (any channels), viewZ, viewNormal. Output: filtered, on an even window: moved by half a pixel.
+// Inputs: sources (lib/sources.glsl), viewZ, viewNormal. Outputs: results, the sources filtered, on an even window: moved by half a pixel.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/sources.glsl"
 
 const bool vertical;
 
-uniform sampler2D source;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
-
-out vec4 filtered;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(viewZ, 0) - 1;
     float centreZ = texelFetch(viewZ, pixel, 0).r;
-    filtered = texelFetch(source, pixel, 0);
+    mat4 sum = sourcesAt(pixel);
+    writeResults(sum);
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
@@ -27,16 +26,15 @@ void main() {
     float planeOffset = normalDotRay * -centreZ;
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
-    vec4 sum = filtered;
     float count = 1.0;
     for (int i = -1; i <= 2; ++i) {
         if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
         if (planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ) < 1.0) {
-            sum += texelFetch(source, other, 0);
+            sum += sourcesAt(other);
             count += 1.0;
         }
     }
-    filtered = sum / count;
+    writeResults(sum / count);
 }

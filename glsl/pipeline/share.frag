@@ -1,11 +1,10 @@
 // One frame's share of a mean; blending adds the shares up.
-// Inputs: source; share, 1 / frames. Output: source × share.
+// Inputs: sources (lib/sources.glsl); share, 1 / frames. Outputs: results, the sources × share.
 
-uniform sampler2D source;
+#include "lib/sources.glsl"
+
 uniform float share;
 
-out vec4 part;
-
 void main() {
-    part = texelFetch(source, ivec2(gl_FragCoord.xy), 0) * share;
+    writeResults(sourcesAt(ivec2(gl_FragCoord.xy)) * share);
 }

@@ -1,19 +1,18 @@
 // Joint bilateral upsampling (Kopf et al. 2007): the four nearest small pixels, weighted as in bilinear interpolation, and
 // by whether they lie on the same surface as the full-size pixel. Where none does, the one nearest in depth is taken.
-// Inputs: source, viewZ, viewNormal at full size; smallViewZ, smallNormal, source at small size. Output: upsampled.
+// Inputs: viewZ, viewNormal at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
+// Outputs: results, the sources at full size.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/sources.glsl"
 
-uniform sampler2D source;
 uniform sampler2D smallViewZ;
 uniform sampler2D smallNormal;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
 uniform vec4 small_ray_from_pixel;
-
-out vec4 upsampled;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -23,18 +22,19 @@ void main() {
     ivec2 corner = ivec2(floor(smallPixel));
     vec2 part = smallPixel - vec2(corner);
     ivec2 last = textureSize(smallViewZ, 0) - 1;
-    upsampled = texelFetch(source, clamp(corner, ivec2(0), last), 0);
+    mat4 nearest = sourcesAt(clamp(corner, ivec2(0), last));
+    writeResults(nearest);
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     float planeOffset = dot(normal, centrePos);
-    vec4 sum = vec4(0.0), nearest = upsampled;
+    mat4 sum = mat4(0.0);
     float weights = 0.0, nearestGap = 1e30;
     for (int i = 0; i < 4; ++i) {
         ivec2 step = ivec2(i & 1, i >> 1);
         ivec2 other = clamp(corner + step, ivec2(0), last);
         float otherZ = texelFetch(smallViewZ, other, 0).r;
-        vec4 value = texelFetch(source, other, 0);
+        mat4 value = sourcesAt(other);
         vec3 otherRay = viewPosAt(vec2(other) + 0.5, -1.0, small_ray_from_pixel);
         float gap = planeDistance(dot(normal, otherRay), otherZ, planeOffset, centreZ);
         vec2 bilinear = mix(1.0 - part, part, vec2(step));
@@ -49,5 +49,5 @@ void main() {
             nearest = value;
         }
     }
-    upsampled = weights > 1e-5 ? sum / weights : nearest;
+    writeResults(weights > 1e-5 ? sum / weights : nearest);
 }

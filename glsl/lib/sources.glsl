@@ -1,0 +1,24 @@
+// Up to four textures that a pass treats alike: what it asks of the geometry, it asks once for all of them.
+// The values of a pixel are a mat4, a column a texture.
+
+const int sources;
+
+uniform sampler2D source0;
+uniform sampler2D source1;
+uniform sampler2D source2;
+uniform sampler2D source3;
+
+layout(location = 0) out vec4 results[sources];
+
+mat4 sourcesAt(ivec2 pixel) {
+    mat4 values = mat4(0.0);
+    values[0] = texelFetch(source0, pixel, 0);
+    if (sources > 1) values[1] = texelFetch(source1, pixel, 0);
+    if (sources > 2) values[2] = texelFetch(source2, pixel, 0);
+    if (sources > 3) values[3] = texelFetch(source3, pixel, 0);
+    return values;
+}
+
+void writeResults(mat4 values) {
+    for (int i = 0; i < sources; ++i) results[i] = values[i];
+}
