@@ -23,7 +23,9 @@ from .measures import relighting_error as relighting_error
 from .mesh import Material as Material
 from .mesh import Mesh as Mesh
 from .mesh import Texture as Texture
+from .modules import S3HO as S3HO
 from .modules import SSAO as SSAO
+from .modules import SSBN as SSBN
 from .modules import SSDO as SSDO
 from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded

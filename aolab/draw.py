@@ -50,7 +50,7 @@ class Painter:
         program = self.programs.get(step.shader, wanted, aliases)
         outputs = targets or {name: self.take(size, format) for name, format in step.outputs.items()}
         program.set(uniforms)
-        self.bind(program, inputs)
+        self.bind(program, {**inputs, **{sampler: inputs[name] for sampler, name in step.reads.items()}})
         framebuffer = self.pool.framebuffer(list(outputs.values()))
         framebuffer.use()
         with self.timer.measure(step.name):

@@ -126,14 +126,19 @@ class Environment:
         return Environment((1 - part) * left + part * np.roll(left, -1, axis=1) if part else left, self.name)
 
     @cached_property
+    def radiance_sh(self) -> np.ndarray:
+        """(16, 3) float64: the projection of the radiance itself, L(ω) ≈ Σ radiance_sh[i] y_i(ω)."""
+        values, directions, solid_angles = averaged(self.radiance)
+        return project(values.reshape(-1, 3), directions.reshape(-1, 3), solid_angles.ravel(), bands=4)
+
+    @property
     def irradiance_sh(self) -> np.ndarray:
         """(9, 3) float64: E(n) = Σ irradiance_sh[i] y_i(n), in the basis of `aolab.spherical_harmonics`.
 
         The bands left out are 1 % on average for natural light (Ramamoorthi & Hanrahan 2001, abstract), and at any
         normal at most 3/32 of ∫ L dω: a point light in the surface's plane, which has 1/4 - 5/32 instead of 0.
         """
-        values, directions, solid_angles = averaged(self.radiance)
-        return irradiance(project(values.reshape(-1, 3), directions.reshape(-1, 3), solid_angles.ravel(), bands=3))
+        return irradiance(self.radiance_sh[:9])
 
     def irradiance(self, normals: np.ndarray) -> np.ndarray:
         """Irradiance (..., 3) on surfaces with world-space unit `normals` (..., 3); never below 0."""

@@ -1,6 +1,6 @@
 """What happens to an estimate before it lights anything: accumulation, noise removal, upsampling.
 
-Buffers are treated in groups of up to four a pass, which asks the geometry once for all of them (glsl/lib/sources.glsl).
+A pass treats up to four buffers alike, and asks the geometry once for all of them (glsl/lib/sources.glsl).
 """
 
 from collections.abc import Iterator, Mapping

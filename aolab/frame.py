@@ -1,24 +1,27 @@
 """What a render gives back: every buffer by name, read when asked for, and the image."""
 
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from io import BytesIO
 from os import PathLike
-from typing import Any
+from typing import Any, Self, TypeVar
 
 import moderngl
 import numpy as np
 from PIL import Image
 
+from .camera import Camera
 from .errors import ParameterError, suggestion
 from .gl.texture import Pool, read
 from .metadata import save_png
+from .scene import Scene
 
 # how many channels of a texture mean something; the others are padding
 _RGB = ("viewNormal", "albedo", "direct", "ambient", "indirect", "irradiance", "bounce", "radiance", "image")
 # scalars that have no value where nothing was drawn
 _NAN_IN_BACKGROUND = ("visibility",)
+Holder = TypeVar("Holder")
 
 
 @dataclass(eq=False)
@@ -28,7 +31,7 @@ class Frame:
     `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
     the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` says how it
     was made: renderer, module, parameters, camera, size, seed, ...; `notes` what was repaired or left out. A frame
-    keeps its textures until it is dropped, so frames may be held and compared; each costs about 50 bytes a pixel.
+    keeps its textures until it is dropped, so frames may be held and compared; each costs 50 to 200 bytes a pixel.
     """
 
     textures: Mapping[str, moderngl.Texture | np.ndarray]
@@ -36,13 +39,16 @@ class Frame:
     info: dict[str, Any]
     frame_ms: float = 0.0
     notes: list[str] = field(default_factory=list)
-    parts: Mapping[str, tuple[str, int]] = field(default_factory=dict)  # name: texture and channel
+    # read off other buffers: each a function of the frame and of "" or "_raw"
+    derived: Mapping[str, tuple[Callable[[Self, str], np.ndarray], str]] = field(default_factory=dict)
+    scene: Scene | None = field(default=None, repr=False)  # what is shown, as it was lit
+    kept: Any = field(default=None, repr=False)  # what its lab needs to light it again
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def buffers(self) -> list[str]:
         """The names that `frame[name]` knows."""
-        return sorted({*self.textures, *self.parts})
+        return sorted({*self.textures, *self.derived})
 
     @property
     def size(self) -> tuple[int, int]:
@@ -53,17 +59,38 @@ class Frame:
         if name not in self.buffers:
             raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.buffers)}")
         if name not in self._arrays:
-            whole, channel = self.parts.get(name, (name, None))
-            source = self.textures[whole]
-            pixels = source if isinstance(source, np.ndarray) else read(source)
-            if channel is not None:
-                pixels = pixels[..., channel]
-            elif name.removesuffix("_raw") in _RGB:
+            if name in self.derived:
+                make, raw = self.derived[name]
+                pixels = make(self, raw)
+            else:
+                pixels = self.channels(name)
+            if name.removesuffix("_raw") in _RGB:
                 pixels = np.ascontiguousarray(pixels[..., :3])
             if name.removesuffix("_raw") in _NAN_IN_BACKGROUND and pixels.shape == self["viewZ"].shape:
                 pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
             self._arrays[name] = pixels
         return self._arrays[name]
+
+    def channels(self, name: str) -> np.ndarray:
+        """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
+        source = self.textures[name]
+        return source if isinstance(source, np.ndarray) else read(source)
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that it was taken with."""
+        return Camera(**self.info["camera"])
+
+    def world_normal(self, like: str = "viewNormal") -> np.ndarray:
+        """(H, W, 3): the unit normals in world space, 0 in the background; at the size of the buffer `like`.
+
+        That may be smaller where a raw estimate was made at a lower `scale`: then those of the nearest pixels.
+        """
+        normal = self["viewNormal"]
+        sizes = zip(normal.shape[:2], self.channels(like).shape[:2], strict=True)
+        rows, columns = ((np.arange(few) + 0.5) * (many / few) for many, few in sizes)
+        nearest = normal[rows.astype(int)[:, None], columns.astype(int)]
+        return nearest @ self.camera.view_from_world[:3, :3].astype(np.float32)
 
     @property
     def image(self) -> np.ndarray:
@@ -102,7 +129,7 @@ class Frame:
         return f"<Frame {width}x{height} {self.info['module']}: {', '.join(self.buffers)}>"
 
 
-def lend(frame: Frame, pool: Pool, lent: list[Any]) -> Frame:
-    """Give the frame's textures back to the pool when nobody holds the frame."""
-    weakref.finalize(frame, pool.give_back, lent)
-    return frame
+def lend(holder: Holder, pool: Pool, lent: list[Any]) -> Holder:
+    """Give the textures `lent` back to the pool when nobody keeps their holder."""
+    weakref.finalize(holder, pool.give_back, lent)
+    return holder

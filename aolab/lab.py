@@ -2,13 +2,16 @@
 
 import operator
 import warnings
-from dataclasses import asdict
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, replace
 from time import perf_counter
 from typing import Any
 
 from . import lighting, surfaces
 from .camera import Camera
 from .draw import Buffers, Painter
+from .environment import Environment
 from .errors import Notice, ParameterError
 from .estimate import Run, estimate
 from .frame import Frame, lend
@@ -17,6 +20,7 @@ from .gl.geometry import Geometry
 from .gl.program import Programs
 from .gl.texture import Pool, Size, check_size, refuse_exhaustion
 from .lighting import Display, EnvironmentMaps, ToneMap
+from .lights import Light
 from .modules import MODULES, Module, find
 from .occluders import KINDS, Stage
 from .scene import Scene
@@ -25,6 +29,15 @@ from .version import __version__
 from .view import View
 
 DEFAULT_SIZE = (1280, 720)
+
+
+@dataclass(eq=False)
+class Unlit:
+    """All of a frame that light has no part in, so that it can be lit again: `run` with its painter's work done, the
+    surfaces and, unless the module's is `lit`, the estimate."""  # fmt: skip
+
+    run: Run
+    buffers: Buffers
 
 
 class Lab:
@@ -88,6 +101,41 @@ class Lab:
             warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
         return frame
 
+    def relight(
+        self,
+        frame: Frame,
+        *,
+        environment: Environment | None = None,
+        lights: Sequence[Light] | None = None,
+        exposure: float | None = None,
+        tone_map: ToneMap | None = None,
+    ) -> Frame:
+        """The same view under another light: only what light has a part in is computed again.
+
+        What is not given stays as it was in `frame`, a frame of `render` or `relight`. Where occlusion is apart from
+        light (`ssao`, `ssbn`, `s3ho`) its estimate stays; SSDO looks the environment up for each direction and has to
+        look again. Raises `ParameterError` for a frame that no lab rendered, and what `render` raises.
+        """
+        start = perf_counter()
+        if not isinstance(frame.kept, Unlit):
+            raise ParameterError(
+                f"relight: this frame, of {frame.info.get('module')}, was not rendered by a lab; "
+                "there is no estimate to light"
+            )
+        unlit = frame.kept
+        changes: dict[str, Any] = {"environment": environment, "lights": None if lights is None else tuple(lights)}
+        assert frame.scene is not None  # it was rendered
+        scene = frame.scene.replace(**{name: value for name, value in changes.items() if value is not None})
+        display = _display(
+            frame.info["exposure"] if exposure is None else exposure,
+            frame.info["tone_map"] if tone_map is None else tone_map,
+        )
+        context.collect()
+        lit = self._lit(Painter(self._programs, self._pool, self._samplers), unlit, scene, display)
+        lit.notes = frame.notes
+        lit.frame_ms = (perf_counter() - start) * 1e3
+        return lit
+
     def _render(
         self, scene: Scene, module: Module, camera: Camera | None, size: Size, seed: int, frames: int, display: Display
     ) -> Frame:
@@ -100,11 +148,8 @@ class Lab:
         view = View(camera, size, scene.bounds)
         self._make_room({view.size, view.scaled(module.scale).size})
         painter = Painter(self._programs, self._pool, self._samplers)
-        try:
-            return self._frame(painter, scene, module, view, seed, frames, display)
-        except BaseException:
-            self._pool.give_back(painter.lent)  # no frame will
-            raise
+        unlit = self._unlit(painter, scene, module, view, range(seed, seed + frames))
+        return self._lit(painter, unlit, scene, display)
 
     def _make_room(self, sizes: set[Size]) -> None:
         """After a change of resolution, free the textures of the old one that no frame holds."""
@@ -112,25 +157,40 @@ class Lab:
             self._pool.trim(sizes)
             self._sizes = sizes
 
-    def _frame(
-        self, painter: Painter, scene: Scene, module: Module, view: View, seed: int, frames: int, display: Display
-    ) -> Frame:
-        shadows = self._shadow_maps(painter, scene)
-        buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
-        stage = Stage(painter, self._geometry, self._depth, scene, view)
-        occluders = KINDS[module.occluders](stage, module, buffers)
-        small = surfaces.shrink(painter, buffers, view, view.scaled(module.scale)) if module.scale < 1 else {}
-        inputs = self._module_inputs(scene, module)
-        run = Run(painter, module, occluders, inputs, view, range(seed, seed + frames), small)
-        buffers |= estimate(run, module.estimate(), buffers)
-        buffers |= lighting.light(painter, buffers, scene, view, shadows, module, occluders)
-        if bounce := module.bounce():
-            buffers |= lighting.senders(painter, buffers, scene, view, shadows, occluders)
-            buffers |= estimate(run, bounce, buffers)
-            buffers |= lighting.reflect(painter, buffers, "bounce", "indirect", view)
-        buffers |= lighting.compose(painter, buffers, self._environments, scene, view, display)
-        refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
+    def _unlit(self, painter: Painter, scene: Scene, module: Module, view: View, seeds: range) -> Unlit:
+        """The surfaces, and the module's estimate if no light takes part in it."""
+        with self._lending(painter):
+            buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
+            stage = Stage(painter, self._geometry, self._depth, scene, view)
+            occluders = KINDS[module.occluders](stage, module, buffers)
+            small = surfaces.shrink(painter, buffers, view, view.scaled(module.scale)) if module.scale < 1 else {}
+            run = Run(painter, module, occluders, {}, view, seeds, small)
+            if not module.lit:
+                buffers |= estimate(run, module.estimate(), buffers)
+            refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")
+        lent, painter.lent = painter.lent, []
+        return lend(Unlit(run, buffers), self._pool, lent)
 
+    def _lit(self, painter: Painter, unlit: Unlit, scene: Scene, display: Display) -> Frame:
+        """A frame from what is known of the surfaces, under the light of `scene`."""
+        module, view, occluders = unlit.run.module, unlit.run.view, unlit.run.occluders
+        assert scene.environment is not None  # Scene fills it in
+        with self._lending(painter):
+            tables = self._environments.tables(scene.environment, module.tables())
+            lit_by = lighting.Light(scene, self._shadow_maps(painter, scene), tables)
+            run = replace(unlit.run, painter=painter, inputs=tables)
+            buffers = dict(unlit.buffers)
+            if module.lit:
+                buffers |= estimate(run, module.estimate(), buffers)
+            buffers |= lighting.light(painter, buffers, lit_by, view, module, occluders)
+            if bounce := module.bounce():
+                sent = lighting.senders(painter, buffers, lit_by, view, occluders)
+                buffers["sender"] = sent["sender"]
+                run = replace(run, occluders=replace(occluders, inputs=occluders.inputs | sent))
+                buffers |= estimate(run, bounce, buffers)
+                buffers |= lighting.bounced(painter, buffers, view)
+            buffers |= lighting.compose(painter, buffers, self._environments.of(scene.environment), view, display)
+            refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
         info = {
             "aolab": __version__,
             "renderer": context.renderer(),
@@ -139,14 +199,23 @@ class Lab:
             "parameters": module.model_dump(),
             "camera": asdict(view.camera),
             "size": list(view.size),
-            "seed": seed,
-            "accumulate": frames,
+            "seed": run.seeds.start,
+            "accumulate": len(run.seeds),
             **asdict(display),
             "triangles": scene.triangles,
         }
-        raw = {f"{name}_raw": (f"{whole}_raw", channel) for name, (whole, channel) in module.parts.items()}
-        frame = Frame(buffers, painter.timer.result(), info, parts={**module.parts, **raw})
+        derived = {f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")}
+        frame = Frame(buffers, painter.timer.result(), info, derived=derived, scene=scene, kept=unlit)
         return lend(frame, self._pool, painter.lent)
+
+    @contextmanager
+    def _lending(self, painter: Painter) -> Iterator[None]:
+        """If this fails, what the painter holds goes back: no frame will give it back."""
+        try:
+            yield
+        except BaseException:
+            self._pool.give_back(painter.lent)
+            raise
 
     def _shadow_maps(self, painter: Painter, scene: Scene) -> ShadowMaps:
         """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
@@ -154,14 +223,6 @@ class Lab:
         if self._shadows is None or self._shadows[0] != key:
             self._shadows = key, draw_shadows(painter, self._geometry, scene)
         return self._shadows[1]
-
-    def _module_inputs(self, scene: Scene, module: Module) -> Buffers:
-        """Textures beside the surfaces that the module asks for."""
-        blur = module.environment_blur()
-        if blur is None:
-            return {}
-        assert scene.environment is not None  # Scene fills it in
-        return {"prefiltered_environment": self._environments.prefiltered(scene.environment, blur)}
 
 
 def _as_scene(scene: Any) -> Scene:

@@ -1,8 +1,11 @@
 """From surfaces and visibility to a picture: direct, ambient, and the sum, tone mapped."""
 
 import weakref
-from dataclasses import dataclass
-from typing import Any, Literal
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from types import MappingProxyType
+from typing import Literal
 
 import moderngl
 import numpy as np
@@ -10,20 +13,20 @@ import numpy as np
 from .draw import Buffers, Painter
 from .environment import HALF_MAX, Environment
 from .gl import context
+from .gl.source import Constant
 from .gl.texture import make, refuse_exhaustion
 from .lights import DirectionalLight, PointLight, SpotLight
 from .modules import Module
 from .occluders import Occluders
-from .passes import Pass
-from .prefiltered import prefiltered
+from .passes import AMBIENT, DIRECT, Pass, reflect
+from .prefiltered import Table
 from .scene import Scene
 from .shadows import ShadowMaps
+from .spherical_harmonics import rotate
 from .view import View, matrix_bytes
 
 ToneMap = Literal["filmic", "linear"]
 
-_DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"})
-_AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
 _SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
 
@@ -31,11 +34,11 @@ _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/lig
 
 
 class EnvironmentMaps:
-    """Environments as textures, kept for as long as the environment lives."""
+    """Environments, and what is made of them, as textures, kept for as long as the environment lives."""
 
     def __init__(self) -> None:
         self._textures: weakref.WeakKeyDictionary[Environment, moderngl.Texture] = weakref.WeakKeyDictionary()
-        self._prefiltered: weakref.WeakKeyDictionary[Environment, tuple[float, moderngl.Texture]] = (
+        self._tables: weakref.WeakKeyDictionary[Environment, dict[str, tuple[Table, moderngl.Texture]]] = (
             weakref.WeakKeyDictionary()
         )
 
@@ -51,14 +54,18 @@ class EnvironmentMaps:
             self._textures[environment] = texture
         return self._textures[environment]
 
-    def prefiltered(self, environment: Environment, solid_angle: float) -> moderngl.Texture:
-        """An octahedral map, RGBA float, blurred to `solid_angle` steradians; the last blur asked for is kept."""
-        kept = self._prefiltered.get(environment)
-        if kept is None or kept[0] != solid_angle:
-            pixels = prefiltered(environment, solid_angle)
-            padded = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
-            kept = self._prefiltered[environment] = solid_angle, make(pixels.shape[1::-1], "RGBA32F", padded.tobytes())
-        return kept[1]
+    def tables(self, environment: Environment, wanted: Mapping[str, Table]) -> Buffers:
+        """What a module wants to be made of the environment, RGBA float; the last of each name is kept."""
+        known = self._tables.setdefault(environment, {})
+        for name, table in wanted.items():
+            if name not in known or known[name][0] != table:
+                pixels = table(environment)
+                padded = np.concatenate([pixels, np.ones_like(pixels[..., :1])], axis=-1)
+                texture = make(pixels.shape[1::-1], "RGBA32F", padded.tobytes())
+                if table.smooth:
+                    texture.filter = (moderngl.LINEAR, moderngl.LINEAR)
+                known[name] = table, texture
+        return {name: known[name][1] for name in wanted}
 
 
 @dataclass(frozen=True)
@@ -69,84 +76,104 @@ class Display:
     tone_map: ToneMap = "filmic"
 
 
+@dataclass(frozen=True)
+class Light:
+    """What lights a scene: its lights with their shadows, its environment, and `tables` made of that (textures)."""
+
+    scene: Scene
+    shadows: ShadowMaps
+    tables: Buffers = field(default_factory=dict)
+
+    @property
+    def environment(self) -> Environment:
+        assert self.scene.environment is not None  # Scene fills it in
+        return self.scene.environment
+
+    @cached_property
+    def inputs(self) -> Buffers:
+        """Textures that lighting passes may read."""
+        return {**self.tables, "shadow_atlas": self.shadows.atlas}
+
+    @cached_property
+    def constants(self) -> dict[str, Constant]:
+        """How many lights and shadow tiles there are; an array has at least one slot, since GLSL has no empty one."""
+        count = len(self.scene.lights)
+        return {"lights": count, "light_slots": max(1, count), "shadow_slots": len(self.shadows.matrices)}
+
+    @cached_property
+    def _uniforms(self) -> dict[str, object]:
+        return {
+            **_light_uniforms(self.scene, self.shadows),
+            "irradiance_sh": self.environment.irradiance_sh.astype(np.float32).tobytes(),
+        }
+
+    def uniforms(self, view: View) -> dict[str, object]:
+        """The lights; the coefficients of the environment's irradiance and, in view space, of its radiance."""
+        seen = rotate(self.environment.radiance_sh.T, view.camera.view_from_world[:3, :3])
+        return {**self._uniforms, "view_environment_sh": np.ascontiguousarray(seen, np.float32).tobytes()}
+
+
 def light(
-    painter: Painter,
-    buffers: Buffers,
-    scene: Scene,
-    view: View,
-    shadows: ShadowMaps,
-    module: Module,
-    occluders: Occluders,
+    painter: Painter, buffers: Buffers, lit_by: Light, view: View, module: Module, occluders: Occluders
 ) -> Buffers:
-    """`direct` and `ambient` radiance; a module that gives `irradiance` has it reflected, in place of the SH's."""
-    lit = _direct(painter, buffers, scene, view, shadows, module, occluders)
-    if "irradiance" in buffers:
-        return lit | reflect(painter, buffers, "irradiance", "ambient", view)
-    return lit | _ambient(painter, buffers, scene, view)
+    """`direct` and `ambient` radiance, and what else the module's lighting passes give."""
+    values = module.model_dump()
+    constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
+    lit: Buffers = {}
+    for step in module.lighting():
+        lit |= _run(painter, step, buffers, lit_by, view, constants, values, occluders)
+    return lit
 
 
-def _direct(
+# for a surface of which no method knows anything: no samples towards the lights
+_PLAIN = {"light_steps": 0, "radius": 0.0, "bias": 0.0, "thickness": 0.0}
+
+
+def _run(
     painter: Painter,
+    step: Pass,
     buffers: Buffers,
-    scene: Scene,
+    lit_by: Light,
     view: View,
-    shadows: ShadowMaps,
-    module: Module | None = None,
+    constants: Mapping[str, Constant] = MappingProxyType({}),
+    values: Mapping[str, object] = MappingProxyType({}),
     occluders: Occluders | None = None,
 ) -> Buffers:
-    """`direct`: the lights through their shadow maps and, if the module has `light_steps`, past what is on screen."""
-    count = len(scene.lights)
-    values: dict[str, Any] = {"light_steps": 0, "radius": 0.0, "bias": 0.0, "thickness": 0.0}
-    if module is not None:
-        values |= module.model_dump()
-    constants = {
-        **{key: value for key, value in values.items() if isinstance(value, int)},
-        "lights": count,
-        "light_slots": max(1, count),
-        "shadow_slots": len(shadows.matrices),
-    }
-    if not occluders or not values["light_steps"]:
+    """One lighting pass. The occluders matter only where samples are taken towards the lights."""
+    if occluders is None or not values.get("light_steps"):
         occluders = Occluders("depth")  # the shader asks nothing of it
-    inputs = {**buffers, **occluders.inputs, "shadow_atlas": shadows.atlas}
-    uniforms = {**view.uniforms, **_light_uniforms(scene, shadows), **values, **occluders.uniforms}
-    aliases = {"occluders.glsl": f"occluders/{occluders.kind}.glsl"}
-    return painter.run(_DIRECT, inputs, uniforms, view.size, constants, aliases)
+    return painter.run(
+        step,
+        {**buffers, **occluders.inputs, **lit_by.inputs},
+        {**_PLAIN, **view.uniforms, **lit_by.uniforms(view), **values, **occluders.uniforms},
+        view.size,
+        {**_PLAIN, **constants, **lit_by.constants, "occluded": "visibility" in buffers},
+        {"occluders.glsl": f"occluders/{occluders.kind}.glsl"},
+    )
 
 
-def _ambient(painter: Painter, buffers: Buffers, scene: Scene, view: View) -> Buffers:
-    assert scene.environment is not None  # Scene fills it in
-    coefficients = np.asarray(scene.environment.irradiance_sh, np.float32).tobytes()
-    uniforms = {**view.uniforms, "irradiance_sh": coefficients}
-    return painter.run(_AMBIENT, buffers, uniforms, view.size, {"occluded": "visibility" in buffers})
-
-
-def senders(
-    painter: Painter, buffers: Buffers, scene: Scene, view: View, shadows: ShadowMaps, occluders: Occluders
-) -> Buffers:
-    """`sender`: what leaves each surface before any bounce, direct + ambient light; hidden ones join the occluders.
+def senders(painter: Painter, buffers: Buffers, lit_by: Light, view: View, occluders: Occluders) -> Buffers:
+    """`sender`, what leaves each surface before any bounce, direct + ambient light; and those of hidden surfaces.
 
     The occlusion of hidden surfaces was not estimated: the environment reaches them unhindered.
     """
+    sent: Buffers = {}
     for suffix, hidden in occluders.hidden.items():
-        lit = _direct(painter, hidden.surfaces, scene, hidden.view, shadows)
-        lit |= _ambient(painter, hidden.surfaces, scene, hidden.view)
-        sent = painter.run(_SENDER, lit, hidden.view.uniforms, hidden.view.size)
-        occluders.inputs[f"sender{suffix}"] = sent["sender"]
-    return painter.run(_SENDER, buffers, view.uniforms, view.size)
+        lit = {}
+        for step in (DIRECT, AMBIENT):
+            lit |= _run(painter, step, hidden.surfaces, lit_by, hidden.view)
+        sent[f"sender{suffix}"] = painter.run(_SENDER, lit, hidden.view.uniforms, hidden.view.size)["sender"]
+    return {**sent, **painter.run(_SENDER, buffers, view.uniforms, view.size)}
 
 
-def reflect(painter: Painter, buffers: Buffers, irradiance: str, radiance: str, view: View) -> Buffers:
-    """The buffer `irradiance`, reflected diffusely, as `radiance`."""
-    step = Pass(radiance, "pipeline/reflect.frag", {radiance: "RGBA16F"})
-    return painter.run(step, {**buffers, "source": buffers[irradiance]}, view.uniforms, view.size)
+def bounced(painter: Painter, buffers: Buffers, view: View) -> Buffers:
+    """`indirect`: the irradiance `bounce`, reflected."""
+    return painter.run(reflect("bounce", "indirect"), buffers, view.uniforms, view.size)
 
 
-def compose(
-    painter: Painter, buffers: Buffers, maps: EnvironmentMaps, scene: Scene, view: View, display: Display
-) -> Buffers:
+def compose(painter: Painter, buffers: Buffers, environment: moderngl.Texture, view: View, display: Display) -> Buffers:
     """`radiance` (the sum, over the environment) and `image` (tone mapped sRGB)."""
-    assert scene.environment is not None
-    inputs = {"indirect": buffers["ambient"], **buffers, "environment": maps.of(scene.environment)}
+    inputs = {"indirect": buffers["ambient"], **buffers, "environment": environment}
     constants = {"has_indirect": "indirect" in buffers, "filmic_tone": display.tone_map == "filmic"}
     return painter.run(_COMPOSE, inputs, {**view.uniforms, "exposure": display.exposure}, view.size, constants)
 

@@ -58,7 +58,7 @@ def depth(stage: Stage, module: Module, first: Buffers) -> Occluders:
 def layers(stage: Stage, module: Module, first: Buffers) -> Occluders:
     """Up to `layers` depth layers, peeled (Everitt 2001); peeling stops early where nothing is left."""
     _say_what_is_open(stage.scene)
-    sends = module.bounce() is not None
+    sends = module.sends()
     behind = _peeled(stage, first["viewZ"], module.layers, sends)
     inputs = _pack(stage, first["viewZ"], behind)
     hidden = {}
@@ -81,7 +81,8 @@ def views(stage: Stage, module: Module, first: Buffers) -> Occluders:
     for number, camera in enumerate(cameras, start=1):
         there = replace(stage, view=View(camera, size, stage.scene.bounds))
         seen = g_buffer(there.painter, there.geometry, there.depth, there.scene, there.view, name="views")
-        inputs |= {f"{name}{number}": texture for name, texture in seen.items() if name != "albedo"}
+        inputs |= {f"{name}{number}": texture for name, texture in seen.items()}
+        inputs[f"sender{number}"] = inputs.pop(f"albedo{number}")
         if module.view_layers > 1:
             behind = _peeled(there, seen["viewZ"], module.view_layers, with_materials=False)
             inputs[f"viewZ{number}"] = _pack(there, seen["viewZ"], behind)["layersZ"]
@@ -100,7 +101,7 @@ def views(stage: Stage, module: Module, first: Buffers) -> Occluders:
         "view_from_camera": b"".join(matrix_bytes(matrix) for matrix in there_from_here),
         "camera_from_view": b"".join(matrix_bytes(np.linalg.inv(matrix)) for matrix in there_from_here),
     }
-    return Occluders("views", inputs, uniforms, hidden if module.bounce() is not None else {})
+    return Occluders("views", inputs, uniforms, hidden if module.sends() else {})
 
 
 # to the right, to the left, above, and from the other side: in the camera's own axes (x right, y up, -z forward)

@@ -1,4 +1,7 @@
-"""Environments blurred to the solid angle that one sample stands for, on an octahedral map."""
+"""Tables that are made of an environment, for shaders to read; here, the map blurred to one sample's solid angle."""
+
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -6,6 +9,26 @@ from .environment import Environment, averaged, uv_from_direction
 
 SHARP_TEXELS = 256  # a side: 0.6° a texel
 BLUR_CELLS = (64, 128)  # rows, columns of the equirectangular map that the blur reads: 2.8° a cell
+
+
+class Table(Protocol):
+    """Makes (h, w, 3) float32 of an environment; equal tables make the same. `smooth`: read between the texels."""
+
+    @property
+    def smooth(self) -> bool: ...
+
+    def __call__(self, environment: Environment) -> np.ndarray: ...
+
+
+@dataclass(frozen=True)
+class Blurred:
+    """The environment on an octahedral map, blurred to `solid_angle` steradians; see `prefiltered`."""
+
+    solid_angle: float
+    smooth: bool = False  # the texels are fine enough
+
+    def __call__(self, environment: Environment) -> np.ndarray:
+        return prefiltered(environment, self.solid_angle)
 
 
 def octahedral_directions(texels: int) -> np.ndarray:

@@ -200,7 +200,7 @@ def _chosen(modules: Iterable[str | Module | type[Module]] | None, judge: SSAO, 
     """The modules with the judge's radius, those that give visibility."""
     chosen = []
     for module in (find(one, MODULES) for one in (modules or MODULES)):
-        if "visibility" not in {*module.outputs, *module.parts}:
+        if "visibility" not in {*module.outputs, *module.derived}:
             given = ", ".join(module.outputs)
             warnings.warn(f"{label(type(module))} is left out: it gives {given}, no visibility", Notice, stacklevel=3)
         elif hasattr(module, "radius"):

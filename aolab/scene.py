@@ -128,5 +128,10 @@ class Scene:
         return np.concatenate(parts)
 
     def replace(self, **changes: object) -> "Scene":
-        """The same scene with other lights, environment, camera, ...; meshes stay where they are on the GPU."""
+        """The same scene with other lights, environment, camera, ...; meshes stay where they are on the GPU.
+
+        With other content it is not what `source` names any more, and has none, unless a new one is given.
+        """
+        if {"instances", "lights", "environment"} & set(changes):
+            changes = {"source": None, **changes}
         return replace(self, **changes)  # type: ignore[arg-type]

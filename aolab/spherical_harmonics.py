@@ -1,16 +1,24 @@
-"""Real spherical harmonics, bands 0 to 3: the NumPy twin of `glsl/lib/sh.glsl`.
+"""Real spherical harmonics, bands 0 to 3: the NumPy twin of `glsl/lib/sh.glsl` and its neighbours.
 
 The basis is the one listed by Sloan 2008, "Stupid Spherical Harmonics (SH) Tricks", appendix A2: orthonormal over the
 sphere, with the Condon-Shortley sign, so that odd m is negative: y_1^-1 = -√(3/4π) y, y_1^0 = √(3/4π) z,
 y_1^1 = -√(3/4π) x. Coefficient i = l (l + 1) + m holds band l, order m. The polynomials' z is the world's z.
+
+Coefficients are an array's last axis, (..., bands²), except where functions have channels: `project`, `evaluate` and
+`irradiance` deal in (bands², C).
 """
+
+from collections.abc import Sequence
 
 import numpy as np
 
 MAX_BANDS = 4
 
 # Ramamoorthi & Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 8: the clamped cosine
-COSINE_BANDS = (np.pi, 2 * np.pi / 3, np.pi / 4, 0.0)
+COSINE_BANDS = np.array([np.pi, 2 * np.pi / 3, np.pi / 4, 0.0])
+
+# Sloan 2008: from a zonal coefficient to the factor of y_lm(d)
+ZONAL_BANDS = np.sqrt(4 * np.pi / np.array([1, 3, 5, 7]))
 
 
 def basis(directions: np.ndarray, bands: int = 3) -> np.ndarray:
@@ -64,5 +72,89 @@ def irradiance(coefficients: np.ndarray) -> np.ndarray:
     """
     coefficients = np.asarray(coefficients, np.float64)
     bands = round(np.sqrt(len(coefficients)))
-    scale = np.repeat(COSINE_BANDS[:bands], [2 * band + 1 for band in range(bands)])
-    return coefficients * scale.reshape(-1, *[1] * (coefficients.ndim - 1))
+    return window(coefficients.T, COSINE_BANDS[:bands]).T
+
+
+def window(coefficients: np.ndarray, weights: np.ndarray | Sequence[float]) -> np.ndarray:
+    """`coefficients` (..., bands²) with band l times `weights[..., l]` (..., bands): (..., bands²)."""
+    coefficients, weights = np.asarray(coefficients, np.float64), np.asarray(weights, np.float64)
+    bands = weights.shape[-1]
+    if coefficients.shape[-1] != bands**2:
+        raise ValueError(f"{bands} weights do not fit {coefficients.shape[-1]} coefficients")
+    return coefficients * np.repeat(weights, [2 * band + 1 for band in range(bands)], axis=-1)
+
+
+def zonal_lobe(zonal: np.ndarray | Sequence[float], directions: np.ndarray) -> np.ndarray:
+    """The lobe with the coefficients `zonal` (..., 4) of order 0, turned from z to unit `directions` (..., 3).
+
+    Returns (..., 16):
+    c_lm = √(4π / (2l + 1)) z_l y_lm(d) (Sloan 2008).
+    """
+    return window(basis(directions, MAX_BANDS), ZONAL_BANDS * np.asarray(zonal, np.float64))
+
+
+def clamped_cosine(directions: np.ndarray) -> np.ndarray:
+    """max(w·d, 0), as a function of w, at unit `directions` d (..., 3): (..., 16)."""
+    return window(basis(directions, MAX_BANDS), COSINE_BANDS)
+
+
+def hanning(width: float, bands: int = MAX_BANDS) -> np.ndarray:
+    """Weights (bands,) of a Hann window against ringing, `width` > 0 bands wide (Sloan 2008)."""
+    if not width > 0:
+        raise ValueError(f"width = {width} is not above 0")
+    band = np.arange(bands)
+    return np.where(band < width, (1 + np.cos(np.pi * band / width)) / 2, 0)
+
+
+def light_lobe(weights: np.ndarray | Sequence[float] = (1, 1, 1, 1)) -> np.ndarray:
+    """Zonal coefficients (..., 4) of a light without size, windowed by `weights` (..., 4).
+
+    Scaled so that an open surface that faces the light receives irradiance 1 (Sloan 2008), which takes weights that
+    leave it some: else ValueError.
+    """
+    lobe = np.asarray(weights, np.float64) / ZONAL_BANDS  # of a Dirac impulse: y_l0 at the pole
+    facing = lobe @ (COSINE_BANDS / ZONAL_BANDS)
+    if not np.all(facing > 0):
+        raise ValueError(f"weights = {weights} leave the surface that faces the light dark")
+    return lobe / facing[..., None]
+
+
+# --- rotation and product by quadrature: plain
+
+
+def _quadrature(rings: int) -> tuple[np.ndarray, np.ndarray]:
+    """Directions (n, 3) and solid angles (n,): Gauss-Legendre rings × azimuths, exact up to degree 2·rings - 1."""
+    z, weights = np.polynomial.legendre.leggauss(rings)
+    step = np.pi / rings
+    azimuth, across = step * np.arange(2 * rings), np.sqrt(1 - z**2)[:, None]
+    directions = np.broadcast_arrays(across * np.cos(azimuth), across * np.sin(azimuth), z[:, None])
+    return np.stack(directions, -1).reshape(-1, 3), np.repeat(weights * step, 2 * rings)
+
+
+_NODES, _SOLID_ANGLES = _quadrature(5)  # degree 9: the three factors of a product
+_NODE_BASIS = basis(_NODES, MAX_BANDS)
+
+
+def rotation(matrix: np.ndarray) -> np.ndarray:
+    """D (..., 16, 16), block-diagonal up to rounding, that turns coefficients by `matrix` (..., 3, 3): f'(w) = f(Rᵀw).
+
+    D_ij = ∫ y_i(R u) y_j(u) du. Raises ValueError where `matrix` is no rotation to 1e-5, which float32 keeps.
+    """
+    matrix = np.asarray(matrix, np.float64)
+    transposed = np.swapaxes(matrix, -1, -2)
+    deviation = np.abs(matrix @ transposed - np.eye(3)).max()
+    if not (deviation <= 1e-5 and np.all(np.linalg.det(matrix) > 0)):
+        raise ValueError(f"matrix = {matrix.tolist()} is no rotation")
+    turned = basis(_NODES @ transposed, MAX_BANDS) * _SOLID_ANGLES[:, None]
+    return np.swapaxes(turned, -1, -2) @ _NODE_BASIS
+
+
+def rotate(coefficients: np.ndarray, matrix: np.ndarray) -> np.ndarray:
+    """`coefficients` (..., 16) turned by the rotation `matrix` (..., 3, 3), else ValueError: (..., 16)."""
+    return (rotation(matrix) @ np.asarray(coefficients, np.float64)[..., None])[..., 0]
+
+
+def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Coefficients (..., 16) of the product of two functions (..., 16), cut to 4 bands."""
+    values = (a @ _NODE_BASIS.T) * (b @ _NODE_BASIS.T)
+    return values * _SOLID_ANGLES @ _NODE_BASIS

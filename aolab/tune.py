@@ -76,7 +76,7 @@ def tune(
     trials = TRIALS * len(axes) if trials is None else trials
     if not isinstance(trials, int) or trials < 1:
         raise ParameterError(f"trials = {trials!r} is not a whole number from 1 on")
-    if "visibility" not in {*module.outputs, *module.parts}:
+    if "visibility" not in {*module.outputs, *module.derived}:
         raise ParameterError(f"{label(type(module))} gives no visibility; it gives {', '.join(module.outputs)}")
     optuna = _optuna()
     training = [load(one) for one in (TRAINING if scenes is None else scenes)]

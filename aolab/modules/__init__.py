@@ -2,9 +2,11 @@
 
 from .base import Module, find
 from .none import Unoccluded
+from .s3ho import S3HO
 from .ssao import SSAO
+from .ssbn import SSBN
 from .ssdo import SSDO
 
-MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO)}
+MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO, S3HO, SSBN)}
 
-__all__ = ["MODULES", "SSAO", "SSDO", "Module", "Unoccluded", "find"]
+__all__ = ["MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "Unoccluded", "find"]

@@ -1,14 +1,20 @@
 """What a module is: parameters, what it gives, and its passes. No GL in here."""
 
-from collections.abc import Mapping
-from typing import Annotated, ClassVar, Literal, Self
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self, TypeVar
 
 from pydantic import Field
 
 from ..errors import ParameterError, suggestion
 from ..parameters import AUTO, Parameters, parameter
-from ..passes import Estimate, Pass
+from ..passes import AMBIENT, DIRECT, Estimate, Pass, reflect
 from ..scene import Scene
+
+if TYPE_CHECKING:
+    import numpy as np
+
+    from ..frame import Frame
+    from ..prefiltered import Table
 
 # Common parameters: one meaning everywhere (see "The face of the package" in the design)
 Radius = Annotated[
@@ -48,6 +54,22 @@ Thickness = Annotated[
     ),
 ]
 
+# of methods that bounce light from what blocks: glsl/lib/senders.glsl
+Bleeding = Annotated[
+    float, Field(ge=0, le=16, description="Strength of the bounce: scales the area of a sender, π radius² / N.")
+]
+DistanceClamp = Annotated[
+    Annotated[float, Field(gt=0)] | Literal["auto"],
+    Field(
+        description="Least distance of a sender; auto is the radius of its patch, radius / √N.",
+        json_schema_extra={"unit": "scene units"},
+    ),
+]
+Senders = Annotated[
+    Literal["patches", "rays"],
+    Field(description="What an occluder sends: a patch of area A_s at its distance, or its share of directions."),
+]
+
 AUTO_RADIUS_SHARES = (0.02, 0.1)  # of the scene's radius: over a few pixels, and not across the room
 
 
@@ -68,9 +90,10 @@ class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
-    format), `parts` (name: buffer and channel, for quantities that share a texture). A module gives `visibility`, and
-    may give `irradiance`, the environment's with occlusion, which the lighting reflects in place of its own.
-    A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    format), `derived` (name: function of the frame and of "" or "_raw", for what is read off other buffers). `lit` says
+    that the estimate itself reads the environment, so that new light asks for a new estimate.
+    A module gives `visibility`, and may give `irradiance`, the environment's with occlusion: the lighting reflects it
+    in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
     """
 
     name: ClassVar[str] = ""
@@ -78,7 +101,8 @@ class Module(Parameters):
     paper: ClassVar[str] = ""
     shader: ClassVar[str] = ""
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
-    parts: ClassVar[Mapping[str, tuple[str, int]]] = {}
+    derived: ClassVar[Mapping[str, "Callable[[Frame, str], np.ndarray]"]] = {}
+    lit: ClassVar[bool] = False
 
     occluders: Literal["depth", "layers", "views"] = parameter(
         "depth", "What is tested for blocking: the camera's depth, `layers` of it, peeled, or further `views`."
@@ -105,13 +129,21 @@ class Module(Parameters):
         """What is computed from the surfaces, before any lighting."""
         return Estimate(self.passes(), self.outputs)
 
+    def lighting(self) -> list[Pass]:
+        """What lights the surfaces once the estimate is known: passes that give `direct` and `ambient` radiance."""
+        return [DIRECT, reflect("irradiance", "ambient") if "irradiance" in self.outputs else AMBIENT]
+
     def bounce(self) -> Estimate | None:
         """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance; or nothing."""
         return None
 
-    def environment_blur(self) -> float | None:
-        """Solid angle, in steradians, to which `prefiltered_environment` is blurred; None: it is not read."""
-        return None
+    def sends(self) -> bool:
+        """Whether what blocks is asked for its light or albedo; then hidden surfaces are drawn with theirs."""
+        return self.bounce() is not None
+
+    def tables(self) -> "Mapping[str, Table]":
+        """Textures that are made of the environment, by the name of their sampler."""
+        return {}
 
     def samples(self, seed: int) -> dict[str, bytes]:
         """Uniform arrays that depend on the seed; another seed is another sample set."""
@@ -122,6 +154,17 @@ class Module(Parameters):
         if getattr(self, "radius", None) == AUTO:
             return self.replace(radius=auto_radius(scene))
         return self
+
+
+Bouncing = TypeVar("Bouncing", bound=Module)
+
+
+def with_distance_clamp(module: Bouncing) -> Bouncing:
+    """The resolved module with an `auto` distance clamp made the radius of a patch: π d² = π radius² / N."""
+    values = module.model_dump()
+    if values["distance_clamp"] != AUTO:
+        return module
+    return module.replace(distance_clamp=values["radius"] / values["directions"] ** 0.5)
 
 
 def find(module: "str | Module | type[Module]", modules: Mapping[str, type[Module]], **parameters: object) -> Module:

@@ -1,14 +1,27 @@
 """Screen-space directional occlusion: light from the open directions, and one bounce from the blocked ones."""
 
-from typing import Annotated, ClassVar, Literal
-
-from pydantic import Field
+from math import pi
+from typing import ClassVar, Literal
 
 from ..kernels import cosine_hemisphere
-from ..parameters import AUTO, parameter
+from ..parameters import parameter
 from ..passes import Pass
+from ..prefiltered import Blurred
 from ..scene import Scene
-from .base import Bias, Directions, Estimate, Falloff, Module, Radius, Steps, Thickness
+from .base import (
+    Bias,
+    Bleeding,
+    Directions,
+    DistanceClamp,
+    Estimate,
+    Falloff,
+    Module,
+    Radius,
+    Senders,
+    Steps,
+    Thickness,
+    with_distance_clamp,
+)
 
 
 class SSDO(Module):
@@ -23,7 +36,8 @@ class SSDO(Module):
     paper = "Ritschel, Grosch and Seidel 2009, Approximating Dynamic Global Illumination in Image Space"
     shader = "ssdo.frag"
     outputs: ClassVar = {"irradiance": "RGBA16F"}
-    parts: ClassVar = {"visibility": ("irradiance", 3)}
+    derived: ClassVar = {"visibility": lambda frame, raw: frame.channels(f"irradiance{raw}")[..., 3]}
+    lit: ClassVar = True
 
     radius: Radius = "auto"
     directions: Directions = 8
@@ -32,13 +46,9 @@ class SSDO(Module):
     falloff: Falloff = 0.3
     thickness: Thickness = 0.9
     bounces: Literal[0, 1] = parameter(0, "Bounces of indirect light: none, or one from the occluders on the screen.")
-    bleeding: float = parameter(1.0, "Strength of the bounce: scales the area of a sender, π radius² / N.", ge=0, le=16)
-    distance_clamp: Annotated[float, Field(gt=0)] | Literal["auto"] = parameter(
-        AUTO, "Least distance of a sender; auto is the radius of its patch, radius / √N.", unit="scene units"
-    )
-    senders: Literal["patches", "rays"] = parameter(
-        "patches", "What an occluder sends: a patch of area A_s at its distance, or the light of its direction's share."
-    )
+    bleeding: Bleeding = 1.0
+    distance_clamp: DistanceClamp = "auto"
+    senders: Senders = "patches"
     light_steps: int = parameter(
         0, "Samples towards each light, on the screen; 0 leaves it to shadow maps.", ge=0, le=64
     )
@@ -49,8 +59,8 @@ class SSDO(Module):
     def samples(self, seed: int) -> dict[str, bytes]:
         return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
 
-    def environment_blur(self) -> float:
-        return self.environment_lod * 2 * 3.141592653589793 / self.directions  # Δω = 2π / N
+    def tables(self) -> dict[str, Blurred]:
+        return {"prefiltered_environment": Blurred(self.environment_lod * 2 * pi / self.directions)}  # Δω = 2π / N
 
     def bounce(self) -> Estimate | None:
         if not self.bounces:
@@ -59,8 +69,4 @@ class SSDO(Module):
         return Estimate([Pass("ssdo bounce", "ssdo.bounce.frag", outputs, constants)], outputs)
 
     def resolved(self, scene: Scene) -> "SSDO":
-        module = super().resolved(scene)
-        if module.distance_clamp == AUTO:
-            assert module.radius != AUTO  # resolved above
-            module = module.replace(distance_clamp=module.radius / module.directions**0.5)
-        return module
+        return with_distance_clamp(super().resolved(scene))

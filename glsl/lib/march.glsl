@@ -40,36 +40,44 @@ bool receiverHere(out Receiver receiver) {
     return true;
 }
 
-// Where along direction `i`, as a share of its reach, the first blocked point lies, or OPEN.
-float firstBlocked(Receiver receiver, int i) {
+// The point `j` on direction `i`, `along` as a share of its reach; and whether something blocks it, and what.
+bool isPointBlocked(Receiver receiver, int i, int j, out float along, out Occluder occluder) {
     vec3 way = receiver.frame * kernel[i].xyz * radius;
-    float offset = interleavedOffset(kernel[i].w, receiver.set);
-    float first = OPEN;
-    for (int j = 0; j < steps; ++j) {
-        Occluder occluder;
-        float along = (float(j) + offset) / float(steps);
-        bool blocked = isBlocked(receiver.viewPos + way * along, thickness * radius, occluder);
-        first = min(first, blocked ? along : OPEN);
-    }
-    return first;
+    along = (float(j) + interleavedOffset(kernel[i].w, receiver.set)) / float(steps);
+    return isBlocked(receiver.viewPos + way * along, thickness * radius, occluder);
 }
 
 // Does anything block direction `i`?
 bool isWayBlocked(Receiver receiver, int i) {
-    return firstBlocked(receiver, i) < OPEN;
+    bool blocked = false;
+    for (int j = 0; j < steps; ++j) {
+        float along;
+        Occluder occluder;
+        blocked = isPointBlocked(receiver, i, j, along, occluder) || blocked;
+    }
+    return blocked;
 }
 
 // The same, and what it is that blocks first: it hides the others.
 bool isWayBlocked(Receiver receiver, int i, out Occluder first) {
-    vec3 way = receiver.frame * kernel[i].xyz * radius;
-    float offset = interleavedOffset(kernel[i].w, receiver.set);
     bool blocked = false;
     for (int j = 0; j < steps; ++j) {
+        float along;
         Occluder occluder;
-        vec3 samplePos = receiver.viewPos + way * ((float(j) + offset) / float(steps));
-        bool hit = isBlocked(samplePos, thickness * radius, occluder);
+        bool hit = isPointBlocked(receiver, i, j, along, occluder);
         if (hit && !blocked) first = occluder;
         blocked = blocked || hit;
     }
     return blocked;
+}
+
+// Where the first blocked point lies on direction `i`, as a share of its reach, or OPEN.
+float firstBlocked(Receiver receiver, int i) {
+    float first = OPEN;
+    for (int j = 0; j < steps; ++j) {
+        float along;
+        Occluder occluder;
+        first = min(first, isPointBlocked(receiver, i, j, along, occluder) ? along : OPEN);
+    }
+    return first;
 }

@@ -12,6 +12,10 @@ uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
 
+// Normals more than 45 degrees apart are of different surfaces: a crease lies within the plane's tolerance. Of none, 45, 26
+// and 14 degrees, 45 had the least error against rays on the six scenes together (ssao and s3ho, 480×270).
+const float LEAST_ALIKE = 0.7;
+
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     ivec2 last = textureSize(viewZ, 0) - 1;
@@ -31,7 +35,8 @@ void main() {
         if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
-        if (planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ) < 1.0) {
+        float alike = dot(normal, texelFetch(viewNormal, other, 0).xyz);
+        if (planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ) < 1.0 && alike > LEAST_ALIKE) {
             sum += sourcesAt(other);
             count += 1.0;
         }

@@ -2,31 +2,19 @@
 // Inputs: viewZ, viewNormal, albedo. Output: direct, linear RGB radiance: Σ albedo/π × E_light × cosθ × shadow.
 
 #include "lib/space.glsl"
-#include "lib/light.glsl"
+#include "lib/lights.glsl"
 #include "lib/sampling.glsl"
 #include "occluders.glsl"
 
-const int lights;
-const int light_slots;   // the same, but at least 1: GLSL has no empty array
-const int shadow_slots;
 const int light_steps;   // samples on the screen towards each light; 0 for none
 
 uniform sampler2D albedo;
-uniform sampler2DShadow shadow_atlas;
 uniform vec4 ray_from_pixel;
 uniform mat4 view_from_world;
 uniform float radius;     // scene units
 uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform mat4 world_from_view;
-uniform int light_kind[light_slots];
-uniform vec3 light_position[light_slots];
-uniform vec3 light_direction[light_slots];
-uniform vec3 light_color[light_slots];
-uniform vec2 light_spot_cos[light_slots];
-uniform int light_tile[light_slots];            // its first shadow tile, or -1 for none
-uniform mat4 shadow_from_world[shadow_slots];
-uniform vec3 shadow_tile[shadow_slots];
 
 out vec4 direct;
 
@@ -56,20 +44,15 @@ void main() {
     vec3 worldNormal = mat3(world_from_view) * normal;
     vec3 irradiance = vec3(0.0);
     for (int i = 0; i < lights; ++i) {
-        float attenuation;
-        vec3 toLight = towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i],
-                                    worldPos, attenuation);
-        attenuation *= max(dot(worldNormal, toLight), 0.0);
-        if (attenuation > 0.0 && light_tile[i] >= 0) {
-            int tile = light_tile[i];
-            if (light_kind[i] == POINT) tile += cubeFace(-toLight);
-            attenuation *= shadowAt(shadow_atlas, shadow_from_world[tile], shadow_tile[tile], worldPos);
-        }
-        if (light_steps > 0 && attenuation > 0.0) {
+        float arriving;
+        vec3 toLight = towardsLightAt(i, worldPos, arriving);
+        arriving *= max(dot(worldNormal, toLight), 0.0);
+        if (arriving > 0.0) arriving *= shadowOf(i, worldPos, toLight);
+        if (light_steps > 0 && arriving > 0.0) {
             float reach = light_kind[i] == DIRECTIONAL ? radius : min(radius, distance(light_position[i], worldPos));
-            attenuation *= reachesLight(lifted, mat3(view_from_world) * toLight, reach, offset);
+            arriving *= reachesLight(lifted, mat3(view_from_world) * toLight, reach, offset);
         }
-        irradiance += light_color[i] * attenuation;
+        irradiance += light_color[i] * arriving;
     }
     direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);
 }

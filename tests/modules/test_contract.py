@@ -129,8 +129,8 @@ def contexts(module: type[Module], field: str) -> list[dict[str, Any]]:
     choices = [
         {other: value}
         for other, info in module.model_fields.items()
-        if other != field and typing.get_origin(info.annotation) is typing.Literal
-        for value in typing.get_args(info.annotation)
+        if other != field and (info.annotation is bool or typing.get_origin(info.annotation) is typing.Literal)
+        for value in ((False, True) if info.annotation is bool else typing.get_args(info.annotation))
         if value != info.default
     ]
     return [{}, *choices]

@@ -1,0 +1,117 @@
+"""Screen-space spherical harmonic occlusion: visibility and cosine as 16 coefficients, apart from any light."""
+
+from collections.abc import Callable
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from ..frame import Frame
+from ..kernels import cosine_hemisphere
+from ..parameters import parameter
+from ..passes import DIRECT, Pass
+from ..scene import Scene
+from ..spherical_harmonics import clamped_cosine, rotation
+from .base import (
+    Bias,
+    Bleeding,
+    Directions,
+    DistanceClamp,
+    Estimate,
+    Falloff,
+    Module,
+    Radius,
+    Senders,
+    Steps,
+    Thickness,
+    with_distance_clamp,
+)
+
+OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
+BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
+
+
+def _transfer(column: int) -> Callable[[Frame, str], np.ndarray]:
+    """c = c_cos(n) - o, the coefficients 4·column to 4·column + 3, world space; 0 in the background."""
+
+    def read(frame: Frame, raw: str) -> np.ndarray:
+        occlusion = np.concatenate([frame[f"occlusion{i}{raw}"] for i in range(4)], axis=-1)
+        here = slice(4 * column, 4 * column + 4)
+        blocked = occlusion @ rotation(frame.camera.view_from_world[:3, :3].T)[here].T
+        normal = frame.world_normal(f"occlusion0{raw}")
+        whole = clamped_cosine(normal)[..., here]
+        return np.where(normal.any(axis=-1, keepdims=True), whole - blocked, 0).astype(np.float32)
+
+    return read
+
+
+def _visibility(frame: Frame, raw: str) -> np.ndarray:
+    """(1/π) ∫ V cosθ dω, by the first coefficient: ∫ f y_0 dω, where y_0 = 1/√4π is constant."""
+    return np.clip(1 - np.float32(2 / np.sqrt(np.pi)) * frame[f"occlusion0{raw}"][..., 0], 0, 1)
+
+
+class S3HO(Module):
+    """Visibility times cosine in spherical harmonics (`sh0` to `sh3`); light comes afterwards, by a dot product.
+
+    The estimate knows no light: `Lab.relight` moves lights, turns the environment, and computes nothing else anew. With
+    `indirect`, what blocks reflects the light that will come, as nine coefficients a colour (`bounce0` to `bounce6`).
+    """
+
+    name = "s3ho"
+    title = "Screen-space spherical harmonic occlusion"
+    paper = "Herholz, Schairer, Schilling and Straßer 2012, Screen Space Spherical Harmonic Occlusion"
+    shader = "s3ho.moments.frag"
+    outputs: ClassVar = OCCLUSION
+    derived: ClassVar = {
+        **{f"sh{i}": _transfer(i) for i in range(4)},
+        "visibility": _visibility,
+    }
+
+    radius: Radius = "auto"
+    directions: Directions = 8
+    steps: Steps = 4
+    bias: Bias = 0.01
+    falloff: Falloff = 0.3
+    thickness: Thickness = 0.9
+    strength: float = parameter(
+        0.0, "λ: what blocks at distance d lets 1 - 1/(1 + λ d) through; 0 blocks wholly, as rays do.", ge=0, le=100,
+        unit="1 / radii",
+    )  # fmt: skip
+    lights: Literal["lobes", "sharp"] = parameter(
+        "lobes", "Lights as windowed lobes that occlusion shades, past their shadow maps; or past these alone, sharp."
+    )
+    light_window: float = parameter(
+        4.0, "Hann window of a light's lobe: its width; the smaller, the broader the lobe.", gt=1, le=64, unit="bands"
+    )
+    indirect: bool = parameter(False, "One bounce from the occluders on the screen, in coefficients too (S3HOGI).")
+    bleeding: Bleeding = 1.0
+    distance_clamp: DistanceClamp = "auto"
+    senders: Senders = "patches"
+
+    def samples(self, seed: int) -> dict[str, bytes]:
+        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
+
+    def estimate(self) -> Estimate:
+        passes, outputs = self.passes(), dict(OCCLUSION)
+        if self.indirect:
+            patches = {"patches": self.senders == "patches"}
+            # light that is not known yet: its sender is told by its albedo, as hidden ones are from the beginning
+            passes.append(Pass("s3ho senders", "s3ho.senders.frag", BOUNCE, patches, {"sender": "albedo"}))
+            outputs |= BOUNCE
+        return Estimate(passes, outputs)
+
+    def passes(self) -> list[Pass]:
+        return [Pass("s3ho", self.shader, OCCLUSION, {"fading": self.strength > 0})]
+
+    def sends(self) -> bool:
+        return self.indirect
+
+    def lighting(self) -> list[Pass]:
+        lobes = Pass("direct", "s3ho.direct.frag", DIRECT.outputs)
+        passes = [lobes if self.lights == "lobes" else DIRECT]
+        passes.append(Pass("ambient", "s3ho.ambient.frag", {"ambient": "RGBA16F"}))
+        if self.indirect:
+            passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": "RGBA16F"}))
+        return passes
+
+    def resolved(self, scene: Scene) -> "S3HO":
+        return with_distance_clamp(super().resolved(scene))

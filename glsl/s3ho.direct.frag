@@ -1,0 +1,45 @@
+// S3HO, the lights: each a lobe around its direction at P, windowed, in the coefficients that the occlusion has.
+// Herholz et al. 2012, Eq. 3 and 4: E(P) = Σ c_l(P) · c(P).
+// A lobe's coefficients are its zonal ones times y_i(d): so c_l · c is the windowed transfer's value towards the light.
+// Besides, lights pass their shadow maps, as in pipeline/direct.frag; the paper has none.
+// Inputs: viewZ, viewNormal, albedo, occlusion0 to occlusion3. Output: direct, linear RGB radiance: albedo/π × E.
+
+#include "lib/space.glsl"
+#include "lib/lights.glsl"
+#include "s3ho.transfer.glsl"
+
+uniform sampler2D viewZ;
+uniform sampler2D viewNormal;
+uniform sampler2D albedo;
+uniform float light_window;  // bands
+uniform vec4 ray_from_pixel;
+uniform mat4 view_from_world;
+uniform mat4 world_from_view;
+
+out vec4 direct;
+
+// A surface that faces away from a light with a shadow map is in its own shadow. The map tells that only roughly where
+// light grazes: the shadow sets in from there on, as a cosine.
+const float TERMINATOR = 0.25;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    float surfaceZ = texelFetch(viewZ, pixel, 0).r;
+    direct = vec4(0.0);
+    if (lights == 0 || isBackground(surfaceZ)) return;
+
+    vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    mat4 windowed = shWindow(transferAt(pixel, normal), SH_ZONAL * shLightLobe(shHanning(light_window)));
+    vec3 irradiance = vec3(0.0);
+    for (int i = 0; i < lights; ++i) {
+        float arriving;
+        vec3 toLight = towardsLightAt(i, worldPos, arriving);
+        vec3 viewToLight = mat3(view_from_world) * toLight;
+        if (light_tile[i] >= 0) {
+            arriving *= shadowOf(i, worldPos, toLight) * smoothstep(0.0, TERMINATOR, dot(normal, viewToLight));
+        }
+        irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
+    }
+    direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);
+}

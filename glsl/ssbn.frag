@@ -1,0 +1,28 @@
+// SSBN: the mean open direction, the bent normal, and how much is open.
+// Klehm, Ritschel, Eisemann and Seidel 2011, "Bent Normals and Cones in Screen-space".
+//   b(P) = 1/N Σ V(s_j) s_j
+// Here the directions have the density cosθ/π. As in s3ho.frag what is summed are the blocked ones: of an open surface
+// b is known, 2/3 n; so b = 2/3 n - 1/N Σ (1 - V) s_j, the same in the mean, and without noise where all is open.
+//
+// Inputs:  viewZ, viewNormal.
+// Output:  blocked_direction: xyz 1/N Σ (1 - V) s_j, world space, w 1/N Σ (1 - V): 1 - w is the visibility.
+
+#include "lib/march.glsl"
+
+uniform mat4 world_from_view;
+
+out vec4 blocked_direction;
+
+void main() {
+    Receiver receiver;
+    blocked_direction = vec4(0.0);
+    if (!receiverHere(receiver)) return;
+
+    vec4 blocked = vec4(0.0);
+    for (int i = 0; i < directions; ++i) {
+        // a kernel's vector is as long as it reaches
+        blocked += isWayBlocked(receiver, i) ? vec4(normalize(kernel[i].xyz), 1.0) : vec4(0.0);
+    }
+    blocked /= float(directions);
+    blocked_direction = vec4(mat3(world_from_view) * (receiver.frame * blocked.xyz), blocked.w);
+}
