@@ -132,7 +132,7 @@ def reference(
             disk.store(name, arrays)
     milliseconds = (perf_counter() - start) * 1e3
     own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
-    return Frame({**own, **arrays}, {"reference": milliseconds}, info, milliseconds)
+    return Frame({**own, **arrays}, {"reference": milliseconds}, info, milliseconds, scene=scene)
 
 
 def _pictures(
