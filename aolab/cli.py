@@ -142,11 +142,19 @@ def compare(
     output: Annotated[
         Path | None, typer.Option("-o", "--output", metavar="FILE.png", help="Draw the sheet of pictures.")
     ] = None,
+    relight: Annotated[
+        int | None, typer.Option(metavar="K", min=1, help="The ambient light's error instead, over K turns of the sky.")
+    ] = None,
     as_json: Json = False,
 ) -> None:
     """Compare modules with the ray-traced truth, sorted by error; with -o, as a sheet of pictures."""
-    from .measures.command import compare_command
+    from .measures.command import compare_command, relight_command
 
+    if relight is not None:
+        if output is not None or buffer != "visibility":
+            raise ParameterError("--relight prints errors of ambient light: it takes no -o and no --buffer")
+        print(relight_command(scene, modules, size, rays, relight, as_json))
+        return
     print(compare_command(scene, modules, size, rays, radius, buffer, output, as_json))
 
 

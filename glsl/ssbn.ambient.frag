@@ -1,13 +1,15 @@
 // SSBN, the environment's light: as much as is open of what a cone around the bent normal sees.
-// Klehm, Ritschel, Eisemann and Seidel 2011: the cone's width follows from the bent normal's length. Ours is exact for a
-// surface that is open in just such a cone, with directions of density cosθ/π: there, with c the cosine of its half angle,
-//   |b| = ∫ cos²θ dω / ∫ cosθ dω = 2/3 (1 + c + c²) / (1 + c),
-// 2/3 where all is open (c = 0), and then E is exactly the environment's irradiance.
+// Klehm, Ritschel, Eisemann and Seidel 2011: the cone's width follows from the bent normal's length. Here it is exact for a
+// surface that is open in just such a cone: there, with c the cosine of its half angle, the mean direction's length is
+//   ∫ cos²θ dω / ∫ cosθ dω = 2/3 (1 + c + c²) / (1 + c)  over the density cosθ/π,
+//   ∫ cosθ dω / ∫ dω = 1/2 (1 + c)                       if directions are uniform.
+// Where all is open c is 0, and E is exactly the environment's irradiance.
 // Inputs: viewNormal, albedo, blocked_direction; cone_environment, the mean radiance in cones (aolab/cones.py).
 // Output: ambient, linear RGB radiance: albedo × visibility × mean radiance.
 
 #include "lib/octahedral.glsl"
 
+const bool uniform_weights;
 const int cone_slices;     // of the table, from the narrowest cone to the hemisphere
 const int cone_texels;     // of a slice's side, a border of one around it
 
@@ -38,10 +40,12 @@ void main() {
 
     vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
     vec4 blocked = texelFetch(blocked_direction, pixel, 0);
-    float visibility = clamp(1.0 - blocked.w, 0.0, 1.0);
-    vec3 bent = (2.0 / 3.0 * worldNormal - blocked.xyz) / max(visibility, 1e-4);
-    float k = clamp(1.5 * length(bent) - 1.0, 0.0, 0.5);
-    float cosine = 0.5 * (k + sqrt(k * k + 4.0 * k));  // c² - k c - k = 0
+    // ∫ V cosθ dω is there both times: of uniform directions it is the part of b along the normal
+    float visibility = clamp(1.0 - (uniform_weights ? 2.0 * dot(blocked.xyz, worldNormal) : blocked.w), 0.0, 1.0);
+    vec3 bent = (uniform_weights ? 1.0 / 2.0 : 2.0 / 3.0) * worldNormal - blocked.xyz;
+    float size = length(bent) / max(1.0 - blocked.w, 1e-4);
+    float k = clamp(1.5 * size - 1.0, 0.0, 0.5);  // c² - k c - k = 0
+    float cosine = uniform_weights ? clamp(2.0 * size - 1.0, 0.0, 1.0) : 0.5 * (k + sqrt(k * k + 4.0 * k));
     float angle = acos(min(cosine, 1.0)) * (2.0 / 3.14159265358979);
     // nothing open, nothing bent: any direction will do
     vec3 direction = dot(bent, bent) > 1e-12 ? bent : worldNormal;

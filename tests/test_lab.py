@@ -232,3 +232,72 @@ def test_meshes_and_environments_that_nobody_holds_are_freed(boxes):
     lab.render(boxes, "none")  # the shadow maps' key holds the last scene's instances until now
     gc.collect()
     assert mesh() is None
+
+
+# --- relighting
+
+SUN = aolab.Environment.sky(sun_direction=(1.0, 1.0, 0.3))
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_a_relit_frame_is_what_a_fresh_one_would_be(lab, boxes, name):
+    lamp = DirectionalLight((-1, -2, -1))
+    first = lab.render(boxes, name, seed=3)
+    relit = lab.relight(first, environment=SUN, lights=[lamp], exposure=0.5, tone_map="linear")
+    fresh = lab.render(boxes.replace(environment=SUN, lights=(lamp,)), name, seed=3, exposure=0.5, tone_map="linear")
+    assert relit.buffers == fresh.buffers
+    for buffer in fresh.buffers:
+        np.testing.assert_allclose(relit[buffer], fresh[buffer], atol=1e-3, err_msg=buffer)
+    assert {**relit.info, "scene": None} == {**fresh.info, "scene": None}
+    assert np.abs(relit["ambient"] - first["ambient"]).max() > 0.1
+
+
+@pytest.mark.parametrize(("name", "again"), [("ssao", set()), ("ssbn", set()), ("s3ho", set()), ("ssdo", {"ssdo"})])
+def test_relighting_runs_what_light_has_a_part_in(lab, boxes, name, again):
+    """SSDO looks the environment up for each direction: its estimate is of that light alone."""
+    first = lab.render(boxes, name, filter="none")
+    relit = lab.relight(first, environment=SUN)
+    assert set(relit.timings) - {"shadows"} == {"direct", "ambient", "compose", *again}
+
+
+def test_what_is_not_given_stays(lab, boxes):
+    lit = boxes.replace(environment=SUN, lights=(DirectionalLight((-1, -2, -1)),))
+    first = lab.render(lit, "s3ho", exposure=0.25)
+    same = lab.relight(first)
+    np.testing.assert_array_equal(same.image, first.image)
+    dark = lab.relight(first, lights=[])
+    assert dark["direct"].max() == 0
+    np.testing.assert_array_equal(dark["ambient"], first["ambient"])
+    again = lab.relight(dark, environment=aolab.Environment.constant(0))
+    assert again["ambient"].max() == 0 == again["direct"].max()
+
+
+def test_a_relit_frame_outlives_the_first_and_both_give_their_textures_back(boxes):
+    lab = aolab.Lab((64, 48))
+    first = lab.render(boxes, "s3ho")
+    kept = first["sh1"]
+    relit = lab.relight(first, environment=SUN)
+    del first
+    gc.collect()
+    lab.render(boxes, "s3ho", radius=0.1)  # would draw over what was given back
+    np.testing.assert_array_equal(relit["sh1"], kept)
+    del relit
+    gc.collect()
+    free = sum(len(textures) for textures in lab._pool._free.values())
+    lab.relight(lab.render(boxes, "s3ho"), environment=SUN)
+    gc.collect()
+    assert sum(len(textures) for textures in lab._pool._free.values()) == free
+
+
+def test_a_frame_without_an_estimate_is_not_relit(lab, boxes):
+    truth = aolab.reference(boxes, size=(16, 12), rays=2, buffers="visibility", cache=False)
+    with pytest.raises(ParameterError, match="relight: this frame, of reference, was not rendered by a lab"):
+        lab.relight(truth, environment=SUN)
+
+
+def test_a_relit_scene_is_not_the_named_one_any_more(lab):
+    """Its picture does not say that it could be made again from the name alone."""
+    first = lab.render("boxes", "s3ho")
+    assert first.info["scene"] == "boxes"
+    assert lab.relight(first, exposure=2.0).info["scene"] == "boxes"
+    assert lab.relight(first, environment=SUN).info["scene"] is None

@@ -101,21 +101,24 @@ def relighting_error(
     accumulate: int = 1,
     seed: int = 0,
     buffer: str = "ambient",
+    like: str | Module | type[Module] | None = None,
     **parameters: object,
 ) -> Relighting:
     """`relight` of a module against the reference that means the same, in the scene's environment or another one.
 
-    The noise of `rays` rays is part of the error. `parameters` are the module's.
+    The noise of `rays` rays is part of the error. `parameters` are the module's; so are the truth's radius and falloff,
+    unless they are `like` another one's.
     """
     scene = load(scene)
     method = find(module, MODULES, **parameters).resolved(scene)
 
+    first = shared_lab().render(scene, method, size=size, camera=camera, seed=seed, accumulate=accumulate)
+
     def result(light: Environment) -> Buffers:
-        lit = scene.replace(environment=light)
-        return shared_lab().render(lit, method, size=size, camera=camera, seed=seed, accumulate=accumulate)
+        return shared_lab().relight(first, environment=light)
 
     def truth(light: Environment) -> Buffers:
         lit = scene.replace(environment=light)
-        return reference(lit, size=size, camera=camera, rays=rays, like=method, buffers=(buffer,), seed=seed)
+        return reference(lit, size=size, camera=camera, rays=rays, like=like or method, buffers=(buffer,), seed=seed)
 
     return relight(result, truth, environment or scene.environment, k, buffer)

@@ -1,23 +1,38 @@
 """Screen-space bent normals and cones: the mean open direction, and how widely it is open."""
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 import numpy as np
 
 from ..cones import SLICES, TEXELS, Cones
 from ..frame import Frame
 from ..kernels import cosine_hemisphere
+from ..parameters import parameter
 from ..passes import AMBIENT, DIRECT, Pass
 from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
 
 
+def _is_uniform(frame: Frame) -> bool:
+    return frame.info["parameters"]["weighting"] == "uniform"
+
+
 def _bent_normal(frame: Frame, raw: str) -> np.ndarray:
-    """Σ V s / Σ V, world space; 0 where nothing is open, and in the background."""
+    """The mean open direction, world space; 0 where nothing is open, and in the background."""
     name = f"blocked_direction{raw}"
     blocked = frame[name]
-    visibility = 1 - blocked[..., 3:]
-    bent = np.float32(2 / 3) * frame.world_normal(name) - blocked[..., :3]
-    return np.where(visibility > 1e-4, bent / np.maximum(visibility, np.float32(1e-4)), np.float32(0))
+    open = 1 - blocked[..., 3:]
+    whole = np.float32(1 / 2 if _is_uniform(frame) else 2 / 3)
+    bent = whole * frame.world_normal(name) - blocked[..., :3]
+    return np.where(open > 1e-4, bent / np.maximum(open, np.float32(1e-4)), np.float32(0))
+
+
+def _visibility(frame: Frame, raw: str) -> np.ndarray:
+    """(1/π) ∫ V cosθ dω; of uniform directions it is the part of the mean direction along the normal."""
+    name = f"blocked_direction{raw}"
+    blocked = frame[name]
+    if _is_uniform(frame):
+        return np.clip(1 - 2 * (blocked[..., :3] * frame.world_normal(name)).sum(axis=-1), 0, 1)
+    return np.clip(1 - blocked[..., 3], 0, 1)
 
 
 class SSBN(Module):
@@ -32,10 +47,7 @@ class SSBN(Module):
     paper = "Klehm, Ritschel, Eisemann and Seidel 2011, Bent Normals and Cones in Screen-space"
     shader = "ssbn.frag"
     outputs: ClassVar = {"blocked_direction": "RGBA16F"}
-    derived: ClassVar = {
-        "bent_normal": _bent_normal,
-        "visibility": lambda frame, raw: np.clip(1 - frame[f"blocked_direction{raw}"][..., 3], 0, 1),
-    }
+    derived: ClassVar = {"bent_normal": _bent_normal, "visibility": _visibility}
 
     radius: Radius = "auto"
     directions: Directions = 8
@@ -43,13 +55,23 @@ class SSBN(Module):
     bias: Bias = 0.01
     falloff: Falloff = 0.3
     thickness: Thickness = 0.9
+    weighting: Literal["cosine", "uniform"] = parameter(
+        "cosine", "How directions count in the bent normal: by their cosine, or all alike, as the paper's."
+    )
 
     def samples(self, seed: int) -> dict[str, bytes]:
         return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
+
+    def passes(self) -> list[Pass]:
+        return [Pass("ssbn", self.shader, self.outputs, self._weights)]
+
+    @property
+    def _weights(self) -> dict[str, bool | int]:
+        return {"uniform_weights": self.weighting == "uniform"}
 
     def tables(self) -> dict[str, Cones]:
         return {"cone_environment": Cones()}
 
     def lighting(self) -> list[Pass]:
-        size = {"cone_slices": SLICES, "cone_texels": TEXELS}
-        return [DIRECT, Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, size)]
+        constants = {"cone_slices": SLICES, "cone_texels": TEXELS, **self._weights}
+        return [DIRECT, Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, constants)]

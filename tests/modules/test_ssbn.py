@@ -1,0 +1,97 @@
+"""SSBN: the mean open direction by rays and by hand, cones whose width is exact, and one colour in a corner."""
+
+import numpy as np
+import pytest
+import small_scenes
+import trimesh
+
+import aolab
+from aolab import Camera, Environment
+from aolab.environment import averaged
+
+SUN = Environment.sky(sun_direction=(1.0, 0.6, 0.3), sun_radiance=(60, 40, 20), sun_angle=20)
+
+
+def test_an_open_plane_has_its_normal_with_the_length_of_the_hemispheres_mean(lab, plane):
+    frame = lab.render(plane, "ssbn")
+    bent = frame["bent_normal"][frame.mask]
+    np.testing.assert_allclose(bent, np.broadcast_to((0, 2 / 3, 0), bent.shape), atol=1e-3)
+    assert (frame["blocked_direction"] == 0).all()
+
+
+def test_visibility_is_that_of_ssao_with_the_same_samples(lab, boxes):
+    ours, plain = (lab.render(boxes, name, radius=0.7) for name in ("ssbn", "ssao"))
+    np.testing.assert_allclose(ours["visibility_raw"], plain["visibility_raw"], atol=1e-3)
+    np.testing.assert_allclose(ours["visibility"], plain["visibility"], atol=3e-3)
+
+
+def test_bent_normals_are_the_references(lab):
+    module = aolab.SSBN(directions=16, steps=16, filter="none", occluders="layers")
+    truth = aolab.reference("boxes", size=(160, 90), like=module, rays=128, buffers=("bent_normal",), cache=False)
+    frame = lab.render("boxes", module, size=(160, 90), accumulate=4)
+    error = (frame["bent_normal"] - truth["bent_normal"])[truth.mask]
+    assert np.sqrt((error**2).mean()) < 0.02
+    flat = np.abs(truth["bent_normal"] - 2 / 3 * truth.world_normal())[truth.mask]
+    assert flat.max() > 0.3  # there is something to bend
+
+
+def test_an_open_ball_gets_exactly_the_environments_irradiance(lab):
+    """The widest cone, in all directions: the table's addresses, borders and interpolation are in here."""
+    values, directions, solid_angles = averaged(SUN.radiance, (64, 128))
+    ball = small_scenes.of(small_scenes.sphere(1.0, (0, 0, 0)), camera=Camera((0, 0, 4), (0, 0, 0)), sky=SUN)
+    for eye in ((0, 0, 4), (0, -4, 0.1), (-3, 0, -3)):
+        frame = lab.render(ball, "ssbn", camera=Camera(eye, (0, 0, 0)))
+        cosine = np.maximum(frame.world_normal()[frame.mask] @ directions.reshape(-1, 3).T, 0)
+        expected = cosine @ (values * solid_angles[..., None]).reshape(-1, 3) / np.pi
+        np.testing.assert_allclose(frame["ambient"][frame.mask], expected, atol=0.03 * expected.max())
+
+
+def test_under_a_constant_sky_it_is_ssao(lab, boxes):
+    ours, plain = (lab.render(boxes, name, radius=0.7) for name in ("ssbn", "ssao"))
+    np.testing.assert_allclose(ours["ambient"], plain["ambient"], atol=5e-3)
+
+
+def test_the_cone_is_as_wide_as_the_opening(lab):
+    """At the bottom of a round pit only a cap of the sky is open: a bright sky beyond its rim changes nothing."""
+    half_angle = np.radians(35)
+    height = 1 / np.tan(half_angle)
+    wall = trimesh.creation.annulus(1.0, 1.2, height, sections=64)
+    wall.apply_transform(trimesh.transformations.rotation_matrix(-np.pi / 2, (1, 0, 0)))
+    wall.apply_translation((0, height / 2, 0))
+    directions = Environment.sky().radiance.shape[:2]
+    polar = (np.arange(directions[0]) + 0.5) / directions[0] * 180
+    outside = np.where(polar > 50, 10.0, 1.0)[:, None, None] * np.ones((1, directions[1], 3))
+    scene = small_scenes.of(
+        small_scenes.floor(0.9),
+        aolab.Mesh(wall.vertices, wall.faces, material=small_scenes.WHITE),
+        camera=Camera((0, 6, 0), (0, 0, 0), up=(0, 0, -1), fov=30),
+        sky=Environment(outside.astype(np.float32)),
+    )
+    frame = lab.render(scene, "ssbn", radius=4.0, directions=64, steps=64, falloff=0.0, filter="none", size=(65, 65))
+    middle = frame["ambient"][31:34, 31:34, 0].mean() / np.nanmean(frame["visibility"][31:34, 31:34])
+    assert np.nanmean(frame["visibility"][31:34, 31:34]) == pytest.approx(np.sin(half_angle) ** 2, abs=0.05)
+    assert middle == pytest.approx(1.0, abs=0.3)  # and 10 in the hemisphere's most part
+    assert lab.render(scene, "ssdo", radius=1e-3, size=(65, 65))["ambient"][32, 32, 0] > 4
+
+
+def test_both_sides_of_a_corner_get_one_colour(lab):
+    """What the S3HO paper says of bent normals: the light from the right is on the wall what it is on the floor."""
+    two = np.ones((64, 128, 3), np.float32) * 0.1
+    two[:20, :, 0] = 3.0  # red from above
+    two[24:40, 85:107, 2] = 3.0  # blue from the right, along the floor
+    corner = small_scenes.of(
+        small_scenes.quad((0, 0, 100), (100, 0, 0), (0, 0, -200)),
+        small_scenes.quad((0, 0, 100), (0, 0, -200), (0, 50, 0)),
+        camera=Camera(eye=(1.2, 1.0, 0), target=(0.0, 0.1, 0), fov=40),
+        sky=Environment(two),
+    )
+    redness = {}
+    for name, settings in {"ssbn": {"weighting": "uniform"}, "s3ho": {}}.items():
+        frame = lab.render(corner, name, radius=2.0, directions=32, steps=8, size=(128, 96), **settings)
+        x, y, _ = np.moveaxis(small_scenes.world_positions(frame, corner.camera), -1, 0)
+        floor = (np.abs(y) < 1e-3) & (x > 0.03) & (x < 0.12)
+        wall = (np.abs(x) < 1e-3) & (y > 0.03) & (y < 0.12)
+        means = [frame["ambient"][where].mean(axis=0) for where in (floor, wall)]
+        redness[name] = [mean[0] / mean[2] for mean in means]
+    apart = {name: floor / wall for name, (floor, wall) in redness.items()}
+    assert apart["ssbn"] < 2.5 < 4 < apart["s3ho"]  # by rays it is 7
