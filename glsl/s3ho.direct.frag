@@ -36,9 +36,8 @@ void main() {
         float arriving;
         vec3 toLight = towardsLightAt(i, worldPos, arriving);
         vec3 viewToLight = mat3(view_from_world) * toLight;
-        if (light_tile[i] >= 0) {
-            arriving *= shadowOf(i, worldPos, toLight) * smoothstep(0.0, TERMINATOR, dot(normal, viewToLight));
-        }
+        if (light_tile[i] >= 0) arriving *= smoothstep(0.0, TERMINATOR, dot(normal, viewToLight));
+        if (arriving > 0.0) arriving *= shadowOf(i, worldPos, toLight);
         irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
     }
     direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);
