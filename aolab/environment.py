@@ -116,6 +116,27 @@ class Environment:
             return cls(read_radiance(path), path.name)
         return cls(linear_from_srgb(read_image(path, path.name)[..., :3]), path.name)
 
+    @classmethod
+    def light_probe(cls, path: str | PathLike[str]) -> "Environment":
+        """A light probe in the angular map of Debevec 1998: a square picture, of which the inscribed circle counts.
+
+        Its centre looks down -z, its rim along +z, up is +y; the angle to -z grows evenly from the centre to the rim.
+        Files as for `load`; raises `FileError`, and `SceneError` for a picture that is not square.
+        """
+        from scipy.ndimage import map_coordinates
+
+        probe = cls.load(path)
+        side, width = probe.radiance.shape[:2]
+        if side != width:
+            raise SceneError(f"light probe '{probe.name}': it is {width}x{side}, and an angular map is square")
+        directions, _ = _cells(np.arange(side + 1), np.arange(2 * side + 1))
+        x, y, z = np.moveaxis(directions, -1, 0)
+        from_centre = np.arccos(np.clip(-z, -1, 1)) / np.pi / np.maximum(np.hypot(x, y), 1e-12)
+        row, column = ((1 + part * from_centre) / 2 * side - 0.5 for part in (-y, x))
+        bands = np.moveaxis(probe.radiance, -1, 0)
+        values = [map_coordinates(band, (row, column), order=1, mode="nearest") for band in bands]
+        return cls(np.stack(values, axis=-1), probe.name)
+
     def rotated(self, degrees: float) -> "Environment":
         """The environment turned about +y, counter-clockwise seen from above; between texels it is interpolated."""
         if not np.isfinite(degrees):

@@ -262,8 +262,7 @@ def test_radiance_cannot_be_changed_behind_the_cached_irradiance():
 
 def test_exr_hdr_and_png_load_with_their_names(tmp_path):
     radiance = np.random.default_rng(0).random((4, 8, 3), np.float32) * 10
-    with OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGB": radiance}) as file:
-        file.write(str(tmp_path / "field.exr"))
+    write_exr(tmp_path / "field.exr", radiance)
     environment = Environment.load(tmp_path / "field.exr")
     np.testing.assert_array_equal(environment.radiance, radiance)
     assert environment.name == "field.exr"
@@ -281,3 +280,39 @@ def test_exr_hdr_and_png_load_with_their_names(tmp_path):
 def test_a_missing_file_is_named(name, tmp_path):
     with pytest.raises(FileError, match=name):
         Environment.load(tmp_path / name)
+
+
+# --- light probes
+
+
+def write_exr(path, radiance: np.ndarray) -> None:
+    with OpenEXR.File({"type": OpenEXR.scanlineimage}, {"RGB": radiance}) as file:
+        file.write(str(path))
+
+
+def angular_map(radiance, side: int) -> np.ndarray:
+    """(side, side, 3): `radiance` of -z turned by π r about y, and by the angle of the pixel about -z."""
+    u, v = np.meshgrid((2 * np.arange(side) + 1) / side - 1, 1 - (2 * np.arange(side) + 1) / side)
+    theta, phi = np.arctan2(v, u), np.pi * np.hypot(u, v)
+    directions = np.stack([np.sin(phi) * np.cos(theta), np.sin(phi) * np.sin(theta), -np.cos(phi)], axis=-1)
+    return np.where(phi[..., None] <= np.pi, radiance(directions), 0)
+
+
+def test_a_light_probe_shines_from_where_it_was_taken(tmp_path):
+    def radiance(directions):
+        return np.stack([1 + directions[..., 0], 1 + directions[..., 1], 1 + directions[..., 2]], axis=-1)
+
+    write_exr(tmp_path / "probe.exr", angular_map(radiance, 128).astype(np.float32))
+    probe = Environment.light_probe(tmp_path / "probe.exr")
+    assert probe.name == "probe.exr"
+    assert probe.radiance.shape == (128, 256, 3)
+    expected = radiance(texel_directions(128, 256))
+    off_the_rim = expected[..., 2] < 1.95  # all of the rim is one direction, +z
+    np.testing.assert_allclose(probe.radiance[off_the_rim], expected[off_the_rim], atol=0.03)
+    np.testing.assert_allclose(probe.irradiance(np.eye(3)), radiance(np.eye(3) * 2 / 3) * np.pi, rtol=0.02)
+
+
+def test_a_light_probe_is_square(tmp_path):
+    write_exr(tmp_path / "wide.exr", np.ones((8, 16, 3), np.float32))
+    with pytest.raises(SceneError, match=r"light probe 'wide.exr': it is 16x8, and an angular map is square"):
+        Environment.light_probe(tmp_path / "wide.exr")

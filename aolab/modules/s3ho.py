@@ -6,25 +6,12 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from ..frame import Frame
-from ..kernels import cosine_hemisphere
 from ..parameters import parameter
 from ..passes import DIRECT, Pass
 from ..scene import Scene
 from ..spherical_harmonics import clamped_cosine, rotation
-from .base import (
-    Bias,
-    Bleeding,
-    Directions,
-    DistanceClamp,
-    Estimate,
-    Falloff,
-    Module,
-    Radius,
-    Senders,
-    Steps,
-    Thickness,
-    with_distance_clamp,
-)
+from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
+from .marched import Marched
 
 OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
 BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
@@ -49,7 +36,7 @@ def _visibility(frame: Frame, raw: str) -> np.ndarray:
     return np.clip(1 - np.float32(2 / np.sqrt(np.pi)) * frame[f"occlusion0{raw}"][..., 0], 0, 1)
 
 
-class S3HO(Module):
+class S3HO(Marched):
     """Visibility times cosine in spherical harmonics (`sh0` to `sh3`); light comes afterwards, by a dot product.
 
     The estimate knows no light: `Lab.relight` moves lights, turns the environment, and computes nothing else anew. With
@@ -66,12 +53,6 @@ class S3HO(Module):
         "visibility": _visibility,
     }
 
-    radius: Radius = "auto"
-    directions: Directions = 8
-    steps: Steps = 4
-    bias: Bias = 0.01
-    falloff: Falloff = 0.3
-    thickness: Thickness = 0.9
     strength: float = parameter(
         0.0, "λ: what blocks at distance d lets 1 - 1/(1 + λ d) through; 0 blocks wholly, as rays do.", ge=0, le=100,
         unit="1 / radii",
@@ -86,9 +67,6 @@ class S3HO(Module):
     bleeding: Bleeding = 1.0
     distance_clamp: DistanceClamp = "auto"
     senders: Senders = "patches"
-
-    def samples(self, seed: int) -> dict[str, bytes]:
-        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
 
     def estimate(self) -> Estimate:
         passes, outputs = self.passes(), dict(OCCLUSION)

@@ -6,10 +6,9 @@ import numpy as np
 
 from ..cones import SLICES, TEXELS, Cones
 from ..frame import Frame
-from ..kernels import cosine_hemisphere
 from ..parameters import parameter
 from ..passes import AMBIENT, DIRECT, Pass
-from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
+from .marched import Marched
 
 
 def _is_uniform(frame: Frame) -> bool:
@@ -35,7 +34,7 @@ def _visibility(frame: Frame, raw: str) -> np.ndarray:
     return np.clip(1 - blocked[..., 3], 0, 1)
 
 
-class SSBN(Module):
+class SSBN(Marched):
     """A cone around the mean open direction stands for all that is open; the environment is looked up in it.
 
     Its map is averaged over cones beforehand, in eight sizes. The estimate knows no light, but a new environment needs
@@ -49,18 +48,9 @@ class SSBN(Module):
     outputs: ClassVar = {"blocked_direction": "RGBA16F"}
     derived: ClassVar = {"bent_normal": _bent_normal, "visibility": _visibility}
 
-    radius: Radius = "auto"
-    directions: Directions = 8
-    steps: Steps = 4
-    bias: Bias = 0.01
-    falloff: Falloff = 0.3
-    thickness: Thickness = 0.9
     weighting: Literal["cosine", "uniform"] = parameter(
         "cosine", "How directions count in the bent normal: by their cosine, or all alike, as the paper's."
     )
-
-    def samples(self, seed: int) -> dict[str, bytes]:
-        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
 
     def passes(self) -> list[Pass]:
         return [Pass("ssbn", self.shader, self.outputs, self._weights)]

@@ -3,28 +3,15 @@
 from math import pi
 from typing import ClassVar, Literal
 
-from ..kernels import cosine_hemisphere
 from ..parameters import parameter
 from ..passes import Pass
 from ..prefiltered import Blurred
 from ..scene import Scene
-from .base import (
-    Bias,
-    Bleeding,
-    Directions,
-    DistanceClamp,
-    Estimate,
-    Falloff,
-    Module,
-    Radius,
-    Senders,
-    Steps,
-    Thickness,
-    with_distance_clamp,
-)
+from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
+from .marched import Marched
 
 
-class SSDO(Module):
+class SSDO(Marched):
     """Occlusion that knows directions: shadows take the colour of the light that still arrives.
 
     With `bounces=1`, each occluder also sends the light that falls on it, as a small patch (`indirect`). With
@@ -39,12 +26,6 @@ class SSDO(Module):
     derived: ClassVar = {"visibility": lambda frame, raw: frame.channels(f"irradiance{raw}")[..., 3]}
     lit: ClassVar = True
 
-    radius: Radius = "auto"
-    directions: Directions = 8
-    steps: Steps = 4
-    bias: Bias = 0.01
-    falloff: Falloff = 0.3
-    thickness: Thickness = 0.9
     bounces: Literal[0, 1] = parameter(0, "Bounces of indirect light: none, or one from the occluders on the screen.")
     bleeding: Bleeding = 1.0
     distance_clamp: DistanceClamp = "auto"
@@ -55,9 +36,6 @@ class SSDO(Module):
     environment_lod: float = parameter(
         1.0, "Blur of the environment, in solid angles of a sample; 0 looks it up as it is, with noise.", ge=0, le=16
     )
-
-    def samples(self, seed: int) -> dict[str, bytes]:
-        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
 
     def tables(self) -> dict[str, Blurred]:
         return {"prefiltered_environment": Blurred(self.environment_lod * 2 * pi / self.directions)}  # Δω = 2π / N

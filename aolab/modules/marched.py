@@ -1,0 +1,22 @@
+"""What methods share that march directions: the Python side of glsl/lib/march.glsl."""
+
+from ..kernels import cosine_hemisphere
+from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
+
+
+class Marched(Module):
+    """A method that looks into cosine-distributed directions, each marched in `steps` points until something blocks.
+
+    Its shader includes lib/march.glsl and asks whether direction `i` is blocked, and by what. Of equal taps, 8 × 4 had
+    less error than 16 × 2 on all six scenes (`aolab bench --quality`); the thickness is fitted (`aolab tune`).
+    """
+
+    radius: Radius = "auto"
+    directions: Directions = 8
+    steps: Steps = 4
+    bias: Bias = 0.01
+    falloff: Falloff = 0.3
+    thickness: Thickness = 0.9
+
+    def samples(self, seed: int) -> dict[str, bytes]:
+        return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}
