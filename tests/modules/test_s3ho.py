@@ -202,6 +202,19 @@ def test_a_light_with_a_shadow_map_is_dark_in_it_and_on_what_faces_away(lab, box
     assert lobes["direct"][lit].max(axis=-1).min() > 0.05
 
 
+def test_a_shadow_sets_in_where_light_grazes(lab):
+    """A lobe still has a fifth of its light at 90°; the shadow map of a ball is rough there, and would show through."""
+    ball = small_scenes.of(small_scenes.sphere(1.0, (0, 0, 0)), camera=aolab.Camera((0, 0, 4), (0, 0, 0)))
+    found = {}
+    for shadow in (True, False):
+        lamp = DirectionalLight((-1.0, 0.0, 0.0), (np.pi, np.pi, np.pi), shadow=shadow)
+        frame = lab.render(under(ball, Environment.constant(0), lamp), "s3ho", size=(128, 96))
+        facing = frame.world_normal()[..., 0]
+        found[shadow] = frame["direct"][frame.mask & (np.abs(facing) < 0.04), 0]
+    assert found[True].max() < 0.03
+    assert found[False].min() > 0.15
+
+
 # --- relighting
 
 
@@ -236,10 +249,10 @@ def test_senders_know_no_light(lab, boxes):
 
 def test_a_sender_reflects_as_its_cosine_lobe(lab):
     """Before a wall of one normal and colour the coefficients are that lobe's, times the albedo and one factor."""
-    red = aolab.Material((0.8, 0.2, 0.1))
+    green = aolab.Material((0.5, 0.9, 0.7))
     scene = small_scenes.of(
         small_scenes.quad((0, 0, 100), (100, 0, 0), (0, 0, -200)),
-        small_scenes.quad((0, 0, 100), (0, 0, -200), (0, 50, 0), red),
+        small_scenes.quad((0, 0, 100), (0, 0, -200), (0, 50, 0), green),
         camera=aolab.Camera(eye=(4, 3, 0), target=(0.5, 0.3, 0), fov=60),
     )
     frame = lab.render(scene, "s3ho", size=SHARP, indirect=True, radius=1.0, senders="rays", steps=8)
@@ -247,7 +260,7 @@ def test_a_sender_reflects_as_its_cosine_lobe(lab):
     found = bounces(frame)[floor]  # (n, 3, 16)
     lobe = clamped_cosine(np.array([1.0, 0.0, 0.0]))
     blocked = 1 - frame["visibility"][floor]  # times π, the form factor, times ρ/π
-    expected = blocked[:, None, None] * np.array(red.base_color)[:, None] * lobe
+    expected = blocked[:, None, None] * np.array(green.base_color)[:, None] * lobe
     np.testing.assert_allclose(found, expected, atol=0.02)
     assert found[..., 0].max() > 0.1
 
