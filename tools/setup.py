@@ -120,7 +120,7 @@ def main(stage: str) -> None:
         if stage == "dev":
             offer_libatomic()
         pip_install("pip>=25.1")  # the first that knows --group
-        extras = "[truth,tune,mitsuba]" if stage == "dev" else "[truth]"  # the tests try every extra for real
+        extras = "[truth,tune,mitsuba,notebook]" if stage == "dev" else "[truth]"  # the tests try every extra for real
         pip_install("--group", stage, "--editable", f".{extras}")
 
 

@@ -13,7 +13,7 @@ def irradiance(world: World, lights: Iterable[Light], positions: np.ndarray, nor
     """(n, 3) float32: what arrives from the lights at lifted `positions` with unit `normals`, both (n, 3)."""
     total = np.zeros_like(positions)
     for light in lights:
-        towards, distance, share = _towards(light, positions, world.centre)
+        towards, distance, share = towards_light(light, positions, world.centre)
         share = share * np.maximum((normals * towards).sum(axis=1), 0)
         lit = np.flatnonzero(share > 0)
         if light.shadow and len(lit):
@@ -23,7 +23,7 @@ def irradiance(world: World, lights: Iterable[Light], positions: np.ndarray, nor
     return total
 
 
-def _towards(light: Light, positions: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def towards_light(light: Light, positions: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Unit directions (n, 3) to the light, distances (n,), and the share (n,) of its colour on a facing surface."""
     if isinstance(light, DirectionalLight):
         towards = -np.asarray(light.direction) / np.linalg.norm(light.direction)
