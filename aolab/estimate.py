@@ -48,7 +48,8 @@ def estimate(run: Run, what: Estimate, large: Buffers) -> Buffers:
 
 def _accumulated(run: Run, what: Estimate, formats: Mapping[str, str], surfaces: Buffers, view: View) -> Buffers:
     means = {name: run.painter.take(view.size, format) for name, format in formats.items()}
-    run.painter.pool.framebuffer(list(means.values())).clear()
+    for mean in means.values():  # one by one: together they may be more than a framebuffer takes
+        run.painter.pool.framebuffer([mean]).clear()
     for seed in run.seeds:
         one = _passes(run, what, surfaces, view, seed)
         filters.accumulate(run.painter, one, means, len(run.seeds), view)

@@ -274,6 +274,16 @@ def test_one_bounce_under_a_constant_sky_is_what_is_blocked_times_the_senders_al
     np.testing.assert_allclose(frame["indirect"][floor][:, 0], expected, atol=0.02)
 
 
+def test_eleven_buffers_accumulate(lab, boxes):
+    """More than a framebuffer takes: twice, for what is not cleared shows when textures are used again."""
+    once = [lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, seed=seed) for seed in (0, 1)]
+    for _ in range(2):
+        both = lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, accumulate=2)
+        for name in ("occlusion2", "bounce0", "bounce6"):
+            mean = (once[0][f"{name}_raw"] + once[1][f"{name}_raw"]) / 2
+            np.testing.assert_allclose(both[f"{name}_raw"], mean, atol=2e-3)
+
+
 def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall):
     """Patches too, and with SSDO's occlusion of the senders switched off: under lights alone there is none."""
     lamp = DirectionalLight((-1.0, -0.8, 0.3), (2.0, 2.0, 2.0), shadow=False)
