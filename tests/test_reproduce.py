@@ -34,6 +34,7 @@ def test_a_figure_is_a_picture_and_its_numbers(gl, tmp_path):
 def test_without_a_figure_it_is_all_of_them():
     assert list(figures("ssdo")) == ["fig1", "fig3", "fig4", "fig6", "fig7", "fig13", "fig14", "table1"]
     assert list(figures("ssdo", "fig7")) == ["fig7"]
+    assert list(figures("s3ho")) == ["fig1", "fig3", "fig5", "fig6", "fig7", "fig8", "fig9", "table1"]
 
 
 def test_an_unknown_paper_or_figure_names_the_nearest():

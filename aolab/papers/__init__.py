@@ -1,3 +1,3 @@
 """The papers' figures and tables, drawn anew: PAPER.py holds `FIGURES`, a function each; see `aolab/reproduce.py`."""
 
-PAPERS = ("ssdo",)
+PAPERS = ("ssdo", "s3ho")

@@ -1,5 +1,6 @@
 """What a reproduced figure is: a picture, the numbers behind the paper's claim, and whether they hold it."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,6 +10,8 @@ from PIL import Image
 from ..frame import Frame
 from ..truth.points import pixel_rays
 from ..view import View
+
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear sRGB (ITU-R BT.709)
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,10 +29,41 @@ def rmse(one: np.ndarray, other: np.ndarray, where: np.ndarray) -> float:
     return float(np.sqrt(np.mean((one - other)[where] ** 2)))
 
 
-def world_positions(frame: Frame, view: View) -> np.ndarray:
-    """(H, W, 3): the surface at each pixel's centre; the eye where nothing was drawn. `view`: what `frame` shows."""
+def noise(draws: Sequence[np.ndarray], where: np.ndarray) -> float:
+    """Standard deviation among `draws`, (H, W[, channels]) of different seeds, over their mean; both of all `where`."""
+    seen = np.array([draw[where] for draw in draws], np.float64)
+    return float(np.sqrt(seen.var(axis=0, ddof=1).mean()) / seen.mean())
+
+
+def chromaticity(rgb: np.ndarray) -> np.ndarray:
+    """(..., 3): the shares of red, green and blue."""
+    return rgb / np.maximum(rgb.sum(axis=-1, keepdims=True), 1e-12)
+
+
+def world_positions(frame: Frame) -> np.ndarray:
+    """(H, W, 3): the surface at each pixel's centre; the eye where nothing was drawn."""
+    assert frame.scene is not None  # it was rendered
+    view = View(frame.camera, frame.size, frame.scene.bounds)
     world_from_view = np.linalg.inv(view.camera.view_from_world)
     width, height = view.size
     rays = pixel_rays(view, np.arange(width * height)).reshape(height, width, 3)
     depth = np.where(frame.mask, -frame["viewZ"], 0)
     return rays * depth[..., None] @ world_from_view[:3, :3].T + world_from_view[:3, 3]
+
+
+def pixel_at(frame: Frame, point: Sequence[float]) -> tuple[int, int]:
+    """(column, row) of the pixel that shows what is nearest to the world-space `point`."""
+    distance = np.linalg.norm(world_positions(frame) - np.asarray(point), axis=-1)
+    row, column = np.unravel_index(np.where(frame.mask, distance, np.inf).argmin(), distance.shape)
+    return int(column), int(row)
+
+
+def closeup(picture: np.ndarray, middle: tuple[float, float], times: int) -> np.ndarray:
+    """A part of a picture (H, W, 3), `times` enlarged to its size, around `middle`: x, y as shares of the picture's."""
+    height, width = picture.shape[:2]
+    left, top = (
+        int(np.clip(share * side - side / (2 * times), 0, side - side // times - 1))
+        for share, side in zip(middle, (width, height), strict=True)
+    )
+    part = picture[top : top + height // times + 1, left : left + width // times + 1]
+    return part.repeat(times, axis=0).repeat(times, axis=1)[:height, :width]

@@ -1,10 +1,10 @@
 """SSDO's largest scene (figure 1) and its table of costs."""
 
 import statistics
+from functools import partial
 from typing import Any
 
 from ..api import shared_lab
-from ..frame import Frame
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
@@ -13,8 +13,8 @@ from ..modules import SSAO, SSDO, Module, Unoccluded
 from ..scene import Scene
 from ..sheet import contact_sheet, table
 from .figure import Figure
+from .timing import REPEATS, in_turns, median_ratio
 
-REPEATS = 9  # frames of which the median is told
 RADIUS = 0.6  # metres: reaches across the mouldings and the folds of the curtains
 PAPER_TRIANGLES = 537_000
 
@@ -43,14 +43,9 @@ def fig1(size: Size = (960, 540), repeats: int = REPEATS) -> Figure:
     large, small = load("atrium", detail=4), load("atrium", detail=1)
     lab = shared_lab()
     frames = {name: lab.render(large, module, size=size) for name, module in modules.items()}
-    times: dict[str, list[float]] = {"large": [], "small": [], "frame": []}
-    for _ in range(repeats):
-        for name, scene in (("large", large), ("small", small)):
-            frame = lab.render(scene, modules["SSDO + 1 bounce"], size=size)
-            times[name].append(_own_passes(frame))
-            if scene is large:
-                times["frame"].append(frame.frame_ms)
-    medians = {name: statistics.median(values) for name, values in times.items()}
+    draw = partial(lab.render, module=modules["SSDO + 1 bounce"], size=size)
+    costs = in_turns({"large": partial(draw, large), "small": partial(draw, small)}, repeats)
+    medians = {name: statistics.median(cost.of("ssdo") for cost in costs[name]) for name in costs}
     claim = "The method's own passes cost the same however many triangles the scene has"
     numbers = {
         "triangles": large.triangles,
@@ -59,7 +54,7 @@ def fig1(size: Size = (960, 540), repeats: int = REPEATS) -> Figure:
         "milliseconds": {
             "passes": medians["large"],
             "passes_with_fewer_triangles": medians["small"],
-            "frame": medians["frame"],
+            "frame": statistics.median(cost.frame for cost in costs["large"]),
         },
         "renderer": context.renderer(),
         "machine": describe(),
@@ -72,10 +67,6 @@ def fig1(size: Size = (960, 540), repeats: int = REPEATS) -> Figure:
     return Figure(picture, numbers, claim, medians["large"] < 1.25 * medians["small"])
 
 
-def _own_passes(frame: Frame) -> float:
-    return sum(milliseconds for name, milliseconds in frame.timings.items() if name.startswith("ssdo"))
-
-
 # --- table 1
 
 
@@ -85,8 +76,7 @@ def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
     The paper's percentages are the share of SSAO's frame rate that is lost, 1 - fps / fps_SSAO, and not the time that
     is added, which is more; both are told. (Of the twelve printed ones, 0.2, 19.3 and 22.2 do not follow from the frame
     rates printed beside them, which give -0.4, 18.8 and 42.1.)
-    `size` stands for the paper's largest one, and the others are scaled with it. Every turn draws one frame of each
-    method, and the ratios are medians over the turns: what else the machine does meets all of them.
+    `size` stands for the paper's largest one, and the others are scaled with it.
     """
     scene = load("atrium", detail=4)
     rows = [_row(scene, size, paper_size, directions, repeats) for paper_size, directions in PAPER]
@@ -128,12 +118,9 @@ def _row(scene: Scene, size: Size, paper_size: Size, directions: int, repeats: i
         "directional_occlusion": SSDO(radius=RADIUS, directions=directions, steps=1),
         "one_bounce": SSDO(radius=RADIUS, directions=directions, steps=1, bounces=1),
     }
-    times: dict[str, list[float]] = {name: [] for name in modules}
-    for turn in range(repeats + 1):
-        for name, module in modules.items():
-            milliseconds = shared_lab().render(scene, module, size=(width, height)).frame_ms
-            if turn:  # the first one compiles
-                times[name].append(milliseconds)
+    draw = partial(shared_lab().render, scene, size=(width, height))
+    costs = in_turns({name: partial(draw, module) for name, module in modules.items()}, repeats)
+    times = {name: [cost.frame for cost in costs[name]] for name in costs}
     ssao_fps, ssdo_fps, bounce_fps, *printed = PAPER[paper_size, directions]
     row: dict[str, Any] = {
         "size": [width, height],
@@ -143,7 +130,7 @@ def _row(scene: Scene, size: Size, paper_size: Size, directions: int, repeats: i
     for name, percent, fps in zip(
         ("directional_occlusion", "one_bounce"), printed, (ssdo_fps, bounce_fps), strict=True
     ):
-        ratio = statistics.median(own / ssao for own, ssao in zip(times[name], times["ssao"], strict=True))
+        ratio = median_ratio(times[name], times["ssao"])
         row[name] = {
             "milliseconds": statistics.median(times[name]),
             "fps_lost_percent": 100 * (1 - 1 / ratio),

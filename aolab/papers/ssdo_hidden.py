@@ -19,7 +19,6 @@ from ..shapes import block, placed
 from ..sheet import contact_sheet, gray
 from ..truth import reference
 from ..truth.picture import shown
-from ..view import View
 from .figure import Figure, world_positions
 
 SIZE = (480, 270)
@@ -38,9 +37,8 @@ def fig6(size: Size = SIZE) -> Figure:
     shadow that is found; the area of false shadows, in areas of the true one.
     """
     scene = _post()
-    assert scene.camera is not None
     truth = reference(scene.replace(lights=(_bulb(),)), size=size, rays=64, buffers=("direct", "radiance"))
-    positions = world_positions(truth, View(scene.camera, truth.size, scene.bounds))
+    positions = world_positions(truth)
     with np.errstate(invalid="ignore"):
         ground = truth.mask & (np.abs(positions[..., 1]) < 1e-3)
     dark = ground & ~truth["direct"].any(axis=-1)

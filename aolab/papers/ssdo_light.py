@@ -18,8 +18,7 @@ from ..shapes import block, placed
 from ..sheet import contact_sheet
 from ..truth import reference
 from ..truth.picture import shown
-from ..view import View
-from .figure import Figure, rmse, world_positions
+from .figure import Figure, chromaticity, rmse, world_positions
 
 SIZE = (640, 360)
 PALE, YELLOW = 0.8, Material((0.85, 0.62, 0.06), name="yellow")
@@ -67,7 +66,7 @@ def fig3(size: Size = SIZE) -> Figure:
         both = [_turn(frame, shaded & (side * truth["bent_normal"][..., 0] > 0.2), scene, side) for side in (-1, 1)]
         turns[name] = dict(zip(("open to the left", "open to the right"), both, strict=True))
     bounced = frames["SSDO + 1 bounce"]["indirect"]
-    across = world_positions(frames["none"], _view(scene, size))[..., 0]
+    across = world_positions(frames["none"])[..., 0]
     blue = {  # share of blue light over red, of what comes off the boxes' sides onto the floor
         name: float(np.divide(*bounced[floor & (side * across > 0.5)].sum(axis=0)[[2, 0]]))
         for name, side in (("at the pale box", -1), ("at the yellow box", 1))
@@ -89,17 +88,11 @@ def fig3(size: Size = SIZE) -> Figure:
     )
 
 
-def _view(scene: Scene, size: Size) -> View:
-    assert scene.camera is not None  # Scene frames itself
-    return View(scene.camera, size, scene.bounds)
-
-
 def _floor(frame: Frame) -> np.ndarray:
     """(H, W) bool: the horizontal part of the backdrop of `stage`, pale and facing up, below the boxes' tops."""
-    view = _view(stage(), frame.size)
-    up = frame["viewNormal"] @ view.camera.view_from_world[:3, 1]
+    up = frame.world_normal()[..., 1]
     with np.errstate(invalid="ignore"):
-        return frame.mask & (up > 0.999) & (np.abs(world_positions(frame, view)[..., 1]) < 0.02)
+        return frame.mask & (up > 0.999) & (np.abs(world_positions(frame)[..., 1]) < 0.02)
 
 
 def _turn(frame: Frame, where: np.ndarray, scene: Scene, side: int) -> float:
@@ -107,14 +100,10 @@ def _turn(frame: Frame, where: np.ndarray, scene: Scene, side: int) -> float:
     assert scene.environment is not None
     radiance, directions, solid_angles = averaged(scene.environment.radiance)
     arriving = radiance * (np.maximum(directions[..., 1], 0) * solid_angles)[..., None]
-    whole = _chromaticity(arriving.sum(axis=(0, 1)))
-    half = _chromaticity(arriving[side * directions[..., 0] > 0].sum(axis=0))
-    away = _chromaticity(frame["ambient"][where].sum(axis=0)) - whole
+    whole = chromaticity(arriving.sum(axis=(0, 1)))
+    half = chromaticity(arriving[side * directions[..., 0] > 0].sum(axis=0))
+    away = chromaticity(frame["ambient"][where].sum(axis=0)) - whole
     return float(away @ (half - whole) / ((half - whole) @ (half - whole)))
-
-
-def _chromaticity(rgb: np.ndarray) -> np.ndarray:
-    return rgb / rgb.sum()
 
 
 # --- figure 4: degrees that the camera has gone around, from before the yellow side to behind it
@@ -157,7 +146,7 @@ def _orbit(size: Size, degrees: float) -> tuple[Frame, float]:
     sun = DirectionalLight((-0.35, -0.6, -1.0), (3.0, 2.8, 2.5))
     scene = Scene((ground, yellow), (sun,), Environment.constant((0.12, 0.14, 0.17)), camera)
     frame = shared_lab().render(scene, BOUNCE.replace(radius=0.8, steps=1), size=size)
-    x, y, z = np.moveaxis(world_positions(frame, View(camera, size, scene.bounds)), -1, 0)
+    x, y, z = np.moveaxis(world_positions(frame), -1, 0)
     patch = frame.mask & (np.abs(x) < 0.5) & (np.abs(y) < 0.02) & (np.abs(z - 0.75) < 0.15)
     return frame, float(frame["indirect"][patch].mean())
 
