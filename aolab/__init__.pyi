@@ -11,8 +11,9 @@ from .errors import ParameterError as ParameterError
 from .errors import SceneError as SceneError
 from .errors import ShaderError as ShaderError
 from .frame import Frame as Frame
-from .glyph_reading import glyph as glyph
-from .glyphs import Glyph as Glyph
+from .glyphs.glyph import Glyph as Glyph
+from .glyphs.picker import glyph_picker as glyph_picker
+from .glyphs.reading import glyph as glyph
 from .lab import Lab as Lab
 from .lights import DirectionalLight as DirectionalLight
 from .lights import PointLight as PointLight
@@ -33,7 +34,6 @@ from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .parameters import parameter as parameter
 from .passes import Pass as Pass
-from .picker import glyph_picker as glyph_picker
 from .scene import Instance as Instance
 from .scene import Scene as Scene
 from .sheet import contact_sheet as contact_sheet

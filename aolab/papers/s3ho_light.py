@@ -9,7 +9,7 @@ from ..api import shared_lab
 from ..camera import Camera
 from ..frame import Frame
 from ..gl.texture import Size
-from ..glyph_reading import glyph
+from ..glyphs.reading import glyph
 from ..lights import DirectionalLight
 from ..loading import load
 from ..mesh import Material

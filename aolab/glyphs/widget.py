@@ -1,4 +1,4 @@
-"""The widget of `aolab.glyph_picker`: the half in Python. The other half, in the browser, is glyph_picker.js."""
+"""The widget of `aolab.glyph_picker`: the half in Python. The other half, in the browser, is widget.js."""
 
 import asyncio
 import threading
@@ -7,10 +7,10 @@ from pathlib import Path
 import anywidget
 import traitlets
 
-from .errors import Error
-from .frame import Frame
-from .glyph_reading import glyph, lit_scene
-from .glyphs import Glyph
+from ..errors import Error
+from ..frame import Frame
+from .glyph import Glyph
+from .reading import glyph, lit_scene
 
 HINT = "Click a pixel, or press an arrow key."
 
@@ -18,7 +18,7 @@ HINT = "Click a pixel, or press an arrow key."
 class GlyphPicker(anywidget.AnyWidget):
     """An image to click in. The browser sets `pixel`; Python answers with `picture`, a PNG or empty, and `message`."""
 
-    _esm = Path(__file__).with_name("glyph_picker.js")
+    _esm = Path(__file__).with_name("widget.js")
 
     image = traitlets.Bytes().tag(sync=True)
     pixel = traitlets.Tuple(traitlets.Int(), traitlets.Int(), default_value=None, allow_none=True).tag(sync=True)

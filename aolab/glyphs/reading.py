@@ -5,18 +5,18 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from .camera import Camera
-from .errors import ParameterError
-from .frame import Frame
-from .gl.texture import Size
-from .glyphs import Glyph
-from .lights import DirectionalLight
-from .modules import MODULES, S3HO
-from .scene import Scene
-from .spherical_harmonics import hanning, light_lobe, rotate, zonal_lobe
-from .truth.lighting import towards_light
-from .truth.points import pixel_rays
-from .view import View
+from ..camera import Camera
+from ..errors import ParameterError
+from ..frame import Frame
+from ..gl.texture import Size
+from ..lights import DirectionalLight
+from ..modules import MODULES, S3HO
+from ..scene import Scene
+from ..spherical_harmonics import hanning, light_lobe, rotate, zonal_lobe
+from ..truth.lighting import towards_light
+from ..truth.points import pixel_rays
+from ..view import View
+from .glyph import Glyph
 
 HARMONICS = [f"sh{i}" for i in range(4)]
 BOUNCE = [f"bounce{i}" for i in range(7)]

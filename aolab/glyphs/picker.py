@@ -2,11 +2,11 @@
 
 from typing import TYPE_CHECKING
 
-from .errors import ParameterError
-from .frame import Frame
+from ..errors import ParameterError
+from ..frame import Frame
 
 if TYPE_CHECKING:
-    from .picker_widget import GlyphPicker
+    from .widget import GlyphPicker
 
 
 def glyph_picker(frame: Frame) -> "GlyphPicker":
@@ -17,7 +17,7 @@ def glyph_picker(frame: Frame) -> "GlyphPicker":
     frame that has no image or no spherical harmonics.
     """
     try:
-        from .picker_widget import GlyphPicker
+        from .widget import GlyphPicker
     except ImportError as error:
         raise ParameterError(f"glyph_picker needs anywidget: pip install anywidget ({error})") from error
     return GlyphPicker(frame)

@@ -72,7 +72,7 @@ def test_a_frame_without_harmonics_is_refused_at_once(lab, plane):
 
 def test_without_anywidget_it_says_what_to_install(frame, monkeypatch):
     monkeypatch.setitem(sys.modules, "anywidget", None)
-    monkeypatch.delitem(sys.modules, "aolab.picker_widget", raising=False)
+    monkeypatch.delitem(sys.modules, "aolab.glyphs.widget", raising=False)
     with pytest.raises(ParameterError, match="pip install anywidget"):
         aolab.glyph_picker(frame)
 
@@ -151,7 +151,7 @@ def dumped(page: Path, profile: Path) -> str:
 
 @pytest.mark.browser
 def test_clicks_and_keys_in_a_browser(tmp_path, frame):
-    script = (Path(aolab.__file__).parent / "glyph_picker.js").read_bytes()
+    script = (Path(aolab.__file__).parent / "glyphs" / "widget.js").read_bytes()
     data = {"%MODULE%": script, "%IMAGE%": frame._repr_png_()}
     text = PAGE
     for place, value in data.items():

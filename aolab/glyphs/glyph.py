@@ -10,11 +10,11 @@ from io import BytesIO
 import numpy as np
 from PIL import Image
 
-from . import glyph_pictures
-from .camera import Camera
-from .gl.texture import Size
-from .glyph_pictures import Lobe
-from .sheet import contact_sheet
+from ..camera import Camera
+from ..gl.texture import Size
+from ..sheet import contact_sheet
+from . import pictures
+from .pictures import Lobe
 
 SIZE = (240, 240)
 
@@ -58,7 +58,7 @@ class Glyph:
     @cached_property
     def lobe(self) -> Lobe:
         """The transfer function in directions all around, and the mesh that `occlusion_picture` draws of it."""
-        return glyph_pictures.lobe(self.coefficients if self.bounce is None else self.transfer)
+        return pictures.lobe(self.coefficients if self.bounce is None else self.transfer)
 
     def occlusion_picture(self, size: Size = SIZE) -> np.ndarray:
         """(height, width, 3) uint8: the transfer function, turned as the image shows the surface (Fig. 2, 4).
@@ -67,19 +67,19 @@ class Glyph:
         below 0; with a bounce, the colour is that of the value. The pin is the normal, the ring lies in the tangent
         plane and is 1 in radius: all glyphs have one scale, unless a strong bounce asks for a smaller one.
         """
-        return glyph_pictures.draw_lobe(self.lobe, self.normal, self.camera, size)
+        return pictures.draw_lobe(self.lobe, self.normal, self.camera, size)
 
     def light_picture(self, size: Size = SIZE) -> np.ndarray:
         """(height, width, 3) uint8: a sphere that has in each direction the colour of the light from there (Fig. 3, 5).
 
         It shows the half that the camera looks at. The brightest colour of the whole sphere is full: `brightest`.
         """
-        return glyph_pictures.draw_light(self.light, self.camera, size)
+        return pictures.draw_light(self.light, self.camera, size)
 
     @property
     def brightest(self) -> float:
         """The largest radiance that comes from any direction, in any of red, green and blue."""
-        return glyph_pictures.brightest(self.light)
+        return pictures.brightest(self.light)
 
     def picture(self, size: Size = SIZE) -> Image.Image:
         """Both pictures, each of `size` (width, height) pixels, with captions."""

@@ -7,14 +7,14 @@ import numpy as np
 import trimesh
 from PIL import Image
 
-from .camera import Camera
-from .environment import Environment
-from .gl.texture import Size
-from .lab import Lab
-from .lights import DirectionalLight
-from .mesh import Material, Mesh
-from .scene import Instance, Scene
-from .spherical_harmonics import evaluate
+from ..camera import Camera
+from ..environment import Environment
+from ..gl.texture import Size
+from ..lab import Lab
+from ..lights import DirectionalLight
+from ..mesh import Material, Mesh
+from ..scene import Instance, Scene
+from ..spherical_harmonics import evaluate
 
 SUBDIVISIONS = 5  # of the icosahedron: 10242 directions, 2° apart; the fourth band's waves are 120° long
 EXTENT = 1.25  # half the picture's height; the ring and the sphere have radius 1, an open surface's lobe is 1.06 long
