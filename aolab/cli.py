@@ -153,7 +153,7 @@ def compare(
     if relight is not None:
         if output is not None or buffer != "visibility":
             raise ParameterError("--relight prints errors of ambient light: it takes no -o and no --buffer")
-        print(relight_command(scene, modules, size, rays, relight, as_json))
+        print(relight_command(scene, modules, size, rays, radius, relight, as_json))
         return
     print(compare_command(scene, modules, size, rays, radius, buffer, output, as_json))
 

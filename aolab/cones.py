@@ -5,11 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from .environment import Environment, averaged
-from .prefiltered import octahedral_directions
+from .prefiltered import BLUR_CELLS, octahedral_directions
 
 SLICES = 8  # half angles from 11.25° in equal steps to 90°
 TEXELS = 32  # a side of a slice, an octahedral map: 5° a texel, half the narrowest cone
-CELLS = (64, 128)  # rows, columns of the equirectangular map that is averaged: 2.8° a cell
 
 
 @dataclass(frozen=True)
@@ -28,11 +27,13 @@ def cones(environment: Environment, slices: int = SLICES, texels: int = TEXELS) 
     Slice i has the half angle (i + 1) / slices · 90°, and θ is the angle to its axis: the last one is irradiance / π. A
     cone's edge is soft over one cell of the map. A constant environment stays exactly that.
     """
+    if np.ptp(environment.radiance, axis=(0, 1)).max() == 0:  # nothing to average
+        return np.broadcast_to(environment.radiance[0, 0], (slices, texels, texels, 3))
     directions = octahedral_directions(texels).reshape(-1, 3).astype(np.float32)
-    values, cells, solid_angles = averaged(fine(environment.radiance), CELLS)
+    values, cells, solid_angles = averaged(fine(environment.radiance), BLUR_CELLS)
     flux = np.concatenate([values, np.ones_like(values[..., :1])], axis=-1) * solid_angles[..., None]
     flux, cells = flux.reshape(-1, 4).astype(np.float32), cells.reshape(-1, 3).astype(np.float32)
-    softness = np.float32(np.pi / CELLS[0])
+    softness = np.float32(np.pi / BLUR_CELLS[0])
     result = np.empty((slices, len(directions), 3), np.float32)
     for start in range(0, len(directions), 128):  # bounds the matrix
         part = slice(start, start + 128)
@@ -47,8 +48,8 @@ def cones(environment: Environment, slices: int = SLICES, texels: int = TEXELS) 
 
 
 def fine(radiance: np.ndarray) -> np.ndarray:
-    """The map with its texels repeated until there are `CELLS` of them: the narrowest cone holds some."""
-    for axis, wanted in enumerate(CELLS):
+    """The map with its texels repeated until there are `BLUR_CELLS` of them: the narrowest cone holds some."""
+    for axis, wanted in enumerate(BLUR_CELLS):
         radiance = np.repeat(radiance, -(-wanted // radiance.shape[axis]), axis=axis)
     return radiance
 

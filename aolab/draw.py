@@ -1,6 +1,7 @@
 """Runs full-screen passes: textures in by name, textures out by name, timed."""
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 import moderngl
 
@@ -50,19 +51,20 @@ class Painter:
         program = self.programs.get(step.shader, wanted, aliases)
         outputs = targets or {name: self.take(size, format) for name, format in step.outputs.items()}
         program.set(uniforms)
-        self.bind(program, {**inputs, **{sampler: inputs[name] for sampler, name in step.reads.items()}})
+        self.bind(program, inputs, step.reads)
         framebuffer = self.pool.framebuffer(list(outputs.values()))
         framebuffer.use()
         with self.timer.measure(step.name):
             self._fullscreen(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
-    def bind(self, program: Program, inputs: Buffers) -> None:
-        """Put the textures that the program samples on units, by name."""
+    def bind(self, program: Program, inputs: Buffers, reads: Mapping[str, str] = MappingProxyType({})) -> None:
+        """Put the textures that the program samples on units, by name; `reads` has other names (sampler: buffer)."""
         for unit, name in enumerate(program.samplers):
-            if name not in inputs:
-                raise ShaderError(f"{program.name}: no buffer '{name}' to sample{suggestion(name, inputs)}")
-            inputs[name].use(unit)
+            buffer = reads.get(name, name)
+            if buffer not in inputs:
+                raise ShaderError(f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, inputs)}")
+            inputs[buffer].use(unit)
             program.uniforms[name].value = unit
             if sampler := self._samplers.get(name):
                 sampler.use(unit)

@@ -76,6 +76,12 @@ class Frame:
         source = self.textures[name]
         return source if isinstance(source, np.ndarray) else read(source)
 
+    def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
+        """What `make` gives, made when first asked for under this name: what several derived buffers share."""
+        if name not in self._arrays:
+            self._arrays[name] = make()
+        return self._arrays[name]
+
     @property
     def camera(self) -> Camera:
         """The camera that it was taken with."""
@@ -87,7 +93,7 @@ class Frame:
         That may be smaller where a raw estimate was made at a lower `scale`: then those of the nearest pixels.
         """
         normal = self["viewNormal"]
-        sizes = zip(normal.shape[:2], self.channels(like).shape[:2], strict=True)
+        sizes = zip(normal.shape[:2], self[like].shape[:2], strict=True)
         rows, columns = ((np.arange(few) + 0.5) * (many / few) for many, few in sizes)
         nearest = normal[rows.astype(int)[:, None], columns.astype(int)]
         return nearest @ self.camera.view_from_world[:3, :3].astype(np.float32)

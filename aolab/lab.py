@@ -117,31 +117,27 @@ class Lab:
         look again. Raises `ParameterError` for a frame that no lab rendered, and what `render` raises.
         """
         start = perf_counter()
-        if not isinstance(frame.kept, Unlit):
-            raise ParameterError(
-                f"relight: this frame, of {frame.info.get('module')}, was not rendered by a lab; "
-                "there is no estimate to light"
-            )
+        if not isinstance(frame, Frame) or not isinstance(frame.kept, Unlit):
+            what = f"this frame, of {frame.info.get('module')}," if isinstance(frame, Frame) else repr(frame)
+            raise ParameterError(f"relight: {what} was not rendered by a lab; there is no estimate to light")
         unlit = frame.kept
-        changes: dict[str, Any] = {"environment": environment, "lights": None if lights is None else tuple(lights)}
+        changes: dict[str, Any] = {"environment": environment, "lights": lights}
         assert frame.scene is not None  # it was rendered
         scene = frame.scene.replace(**{name: value for name, value in changes.items() if value is not None})
         display = _display(
             frame.info["exposure"] if exposure is None else exposure,
             frame.info["tone_map"] if tone_map is None else tone_map,
         )
-        context.collect()
+        self._begin()
         lit = self._lit(Painter(self._programs, self._pool, self._samplers), unlit, scene, display)
-        lit.notes = frame.notes
+        lit.notes = list(frame.notes)
         lit.frame_ms = (perf_counter() - start) * 1e3
         return lit
 
     def _render(
         self, scene: Scene, module: Module, camera: Camera | None, size: Size, seed: int, frames: int, display: Display
     ) -> Frame:
-        context.collect()
-        if self.watch:
-            self._programs.reload(only_changed=True, tell_again=False)
+        self._begin()
         camera = camera or scene.camera
         assert camera is not None  # Scene frames itself
         module = module.resolved(scene)
@@ -150,6 +146,11 @@ class Lab:
         painter = Painter(self._programs, self._pool, self._samplers)
         unlit = self._unlit(painter, scene, module, view, range(seed, seed + frames))
         return self._lit(painter, unlit, scene, display)
+
+    def _begin(self) -> None:
+        context.collect()
+        if self.watch:
+            self._programs.reload(only_changed=True, tell_again=False)
 
     def _make_room(self, sizes: set[Size]) -> None:
         """After a change of resolution, free the textures of the old one that no frame holds."""

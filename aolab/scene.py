@@ -1,5 +1,6 @@
 """A scene: meshes placed in the world, lights, an environment, a camera. Immutable, so that GPU copies can be kept."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -62,7 +63,12 @@ class Scene:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "instances", tuple(self.instances))
-        object.__setattr__(self, "lights", tuple(self.lights))
+        object.__setattr__(self, "lights", self._checked_lights())
+        if self.environment is not None and not isinstance(self.environment, Environment):
+            raise SceneError(
+                f"scene '{self.name}': environment = {self.environment!r:.80} is not an Environment; "
+                "make one with Environment.constant, .sky, .load or .light_probe"
+            )
         if not self.instances:
             raise SceneError(f"scene '{self.name}' is empty: it holds no mesh")
         if self.environment is None and not self.lights:
@@ -83,6 +89,16 @@ class Scene:
             )
         if self.camera is None:
             object.__setattr__(self, "camera", Camera.framing(self.bounds))
+
+    def _checked_lights(self) -> tuple[Light, ...]:
+        lights = tuple(self.lights) if isinstance(self.lights, Iterable) else (self.lights,)
+        for light in lights:
+            if not isinstance(light, Light) or lights == (self.lights,):
+                raise SceneError(
+                    f"scene '{self.name}': lights = {self.lights!r:.80} is not a sequence of lights: "
+                    "DirectionalLight, PointLight, SpotLight"
+                )
+        return lights
 
     @cached_property
     def bounds(self) -> np.ndarray:

@@ -9,6 +9,7 @@ from .parameters import label
 
 MEANING = {"radius", "falloff"}  # the truth is told them, too: they are the question, not the answer
 COST = {"directions", "steps", "scale", "occluders"}  # more of it is always better, and slower
+LIGHT = {"bleeding", "distance_clamp", "environment_lod", "light_steps", "light_window"}  # visibility knows none of it
 SPAN = 30.0  # a positive number is searched within this factor of where it stands
 WIDE = 10.0  # ranges that span more than this factor are searched on a logarithmic scale
 DIGITS = 3  # significant ones of a tuned number; more would say nothing
@@ -45,8 +46,8 @@ class Axis:
 
 
 def tunable(module: Module) -> list[str]:
-    """Numbers of the module's own that neither say what is asked nor what it may cost: the default choice."""
-    own = type(module).model_fields.keys() - Module.model_fields.keys() - MEANING - COST
+    """Numbers of the module's own that say neither what is asked nor what it may cost, and are of visibility."""
+    own = type(module).model_fields.keys() - Module.model_fields.keys() - MEANING - COST - LIGHT
     return [name for name in type(module).model_fields if name in own and _is_number(getattr(module, name))]
 
 

@@ -85,10 +85,9 @@ def window(coefficients: np.ndarray, weights: np.ndarray | Sequence[float]) -> n
 
 
 def zonal_lobe(zonal: np.ndarray | Sequence[float], directions: np.ndarray) -> np.ndarray:
-    """The lobe with the coefficients `zonal` (..., 4) of order 0, turned from z to unit `directions` (..., 3).
+    """(..., 16): the lobe with the coefficients `zonal` (..., 4) of order 0, turned from z to `directions` (..., 3).
 
-    Returns (..., 16):
-    c_lm = √(4π / (2l + 1)) z_l y_lm(d) (Sloan 2008).
+    c_lm = √(4π / (2l + 1)) z_l y_lm(d) (Sloan 2008); directions are unit vectors.
     """
     return window(basis(directions, MAX_BANDS), ZONAL_BANDS * np.asarray(zonal, np.float64))
 

@@ -18,10 +18,6 @@ uniform mat4 world_from_view;
 
 out vec4 direct;
 
-// A surface that faces away from a light with a shadow map is in its own shadow. The map tells that only roughly where
-// light grazes: the shadow sets in from there on, as a cosine.
-const float TERMINATOR = 0.25;
-
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float surfaceZ = texelFetch(viewZ, pixel, 0).r;
@@ -36,8 +32,7 @@ void main() {
         float arriving;
         vec3 toLight = towardsLightAt(i, worldPos, arriving);
         vec3 viewToLight = mat3(view_from_world) * toLight;
-        if (light_tile[i] >= 0) arriving *= smoothstep(0.0, TERMINATOR, dot(normal, viewToLight));
-        if (arriving > 0.0) arriving *= shadowOf(i, worldPos, toLight);
+        arriving *= lobesShadowOf(i, worldPos, toLight, dot(normal, viewToLight));
         irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
     }
     direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);

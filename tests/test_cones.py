@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from aolab import Environment
-from aolab.cones import CELLS, SLICES, TEXELS, Cones, bordered, cones
+from aolab.cones import SLICES, TEXELS, Cones, bordered, cones
 from aolab.environment import averaged
-from aolab.prefiltered import octahedral_directions, octahedral_uv
+from aolab.prefiltered import BLUR_CELLS, octahedral_directions, octahedral_uv
 
 SKY = Environment.sky(sun_direction=(1.0, 0.8, -0.3), sun_angle=25)
 
@@ -22,7 +22,7 @@ def test_a_constant_environment_stays_exactly_that(color):
 
 def test_the_widest_cone_is_irradiance_over_pi():
     """Summed here over all cells of the map, texel by texel."""
-    values, directions, solid_angles = averaged(SKY.radiance, CELLS)
+    values, directions, solid_angles = averaged(SKY.radiance, BLUR_CELLS)
     normal = octahedral_directions(TEXELS)[::7, ::5]
     cosine = np.maximum(np.einsum("abk,ijk->abij", normal, directions), 0)
     expected = np.einsum("abij,ij,ijc->abc", cosine, solid_angles, values) / np.pi

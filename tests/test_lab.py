@@ -2,6 +2,7 @@
 
 import gc
 import json
+import os
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from PIL import Image
 
 import aolab
 from aolab import Camera, DirectionalLight, Lab, ParameterError
+from aolab.cones import Cones
 from aolab.modules import MODULES
 
 BUFFERS = ("viewZ", "viewNormal", "albedo", "visibility_raw", "visibility", "direct", "ambient", "radiance", "image")
@@ -301,3 +303,52 @@ def test_a_relit_scene_is_not_the_named_one_any_more(lab):
     assert first.info["scene"] == "boxes"
     assert lab.relight(first, exposure=2.0).info["scene"] == "boxes"
     assert lab.relight(first, environment=SUN).info["scene"] is None
+
+
+@pytest.mark.parametrize(
+    ("light", "message"),
+    [
+        ({"lights": DirectionalLight((0, -1, 0))}, "is not a sequence of lights"),
+        ({"lights": ["sun"]}, "is not a sequence of lights"),
+        ({"environment": "sky"}, "environment = 'sky' is not an Environment; make one with"),
+        ({"environment": np.ones((2, 4, 3))}, "is not an Environment"),
+    ],
+)
+def test_what_is_no_light_is_refused(lab, boxes, light, message):
+    frame = lab.render(boxes, "s3ho")
+    with pytest.raises(aolab.SceneError, match=message):
+        lab.relight(frame, **light)
+    with pytest.raises(ParameterError, match="relight: None was not rendered by a lab"):
+        lab.relight(None)
+
+
+def test_watching_sees_edits_of_lighting_shaders(shaders, boxes):
+    lab = aolab.Lab((32, 24), watch=True)
+    frame = lab.render(boxes, "s3ho")
+    assert frame["ambient"].max() > 0.1
+    path = shaders / "s3ho.ambient.frag"
+    path.write_text(path.read_text().replace("irradiance = max(irradiance, 0.0);", "irradiance = vec3(0.0);"))
+    os.utime(path, (0, 0))
+    assert lab.relight(frame)["ambient"].max() == 0
+
+
+def test_what_is_made_of_an_environment_is_made_once(lab, boxes, monkeypatch):
+    made = []
+    table = Cones.__call__
+    monkeypatch.setattr(Cones, "__call__", lambda self, environment: made.append(1) or table(self, environment))
+    scene = boxes.replace(environment=SUN.rotated(17))
+    first = lab.render(scene, "ssbn")
+    lab.render(scene, "ssbn", radius=0.2)
+    lab.relight(first, exposure=2.0)
+    assert len(made) == 1
+    lab.relight(first, environment=SUN.rotated(18))
+    assert len(made) == 2
+
+
+def test_normals_are_those_of_a_buffers_size(lab, boxes):
+    frame = lab.render(boxes, "s3ho", scale=0.5)
+    assert frame.world_normal().shape == (48, 64, 3)
+    assert frame.world_normal("occlusion0_raw").shape == (24, 32, 3)
+    assert frame.world_normal("sh0").shape == (48, 64, 3)
+    with pytest.raises(ParameterError, match="no buffer 'shh'"):
+        frame.world_normal("shh")

@@ -11,7 +11,7 @@ from ..errors import FileError, ParameterError
 from ..loading import load
 from ..modules import MODULES, Module
 from ..output import check_writable, replacing
-from .ranking import Entry, compare_modules, sheet
+from .ranking import Entry, compare_modules, label, sheet, with_their_truth
 from .relighting import relighting_error
 
 
@@ -39,22 +39,21 @@ def compare_command(
     return table(entries)
 
 
-def relight_command(scene: str, modules: str | None, size: str, rays: int, turns: int, as_json: bool) -> str:
+def relight_command(
+    scene: str, modules: str | None, size: str, rays: int, radius: float | None, turns: int, as_json: bool
+) -> str:
     """The error of each module's ambient light as the environment turns around the scene, best first, to be printed."""
-    loaded, chosen = load(scene), _chosen(modules)
-    reach = next((module for module in chosen if hasattr(module, "radius")), None)
-    found = {
-        _name(one): relighting_error(
-            loaded, one, turns, size=parse_size(size), rays=rays, like=one if hasattr(one, "radius") else reach
-        )
-        for one in chosen
-    }
-    found = dict(sorted(found.items(), key=lambda item: item[1].rmse))
+    loaded = load(scene)
+    found = [
+        (label(one, loaded), relighting_error(loaded, one, turns, size=parse_size(size), rays=rays, like=like))
+        for one, like in with_their_truth(loaded, _chosen(modules), radius)
+    ]
+    found.sort(key=lambda item: item[1].rmse)
     if as_json:
-        return json.dumps({name: json.loads(one.to_json()) for name, one in found.items()}, indent=2)
-    width = max(map(len, found))
+        return json.dumps([{"module": name, **json.loads(one.to_json())} for name, one in found], indent=2)
+    width = max(len(name) for name, _ in found)
     lines = [f"{'':<{width}}{'rmse':>10}{'relative':>10}{'worst':>10}{'at':>7}   ambient, {turns} turns"]
-    for name, one in found.items():
+    for name, one in found:
         mean, worst = float(np.mean(one.relative)), one.measures[one.worst].rmse
         lines.append(f"{name:<{width}}{one.rmse:>10.4f}{mean:>10.3f}{worst:>10.4f}{one.degrees[one.worst]:>6.0f}°")
     return "\n".join(lines)
@@ -64,11 +63,6 @@ def _chosen(modules: str | None) -> list[Module]:
     if modules is None:
         return [module() for module in MODULES.values()]
     return [parse_module(text) for text in modules.split(",")]
-
-
-def _name(module: Module) -> str:
-    changed = module.model_dump(exclude_defaults=True)
-    return " ".join([module.name, *(f"{key}={value}" for key, value in changed.items())])
 
 
 def parse_module(text: str) -> Module:

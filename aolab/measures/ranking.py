@@ -66,11 +66,8 @@ def compare_modules(
     first one that has. `radius` (scene units) sets them all. Raises what `aolab.render` and `aolab.reference` raise.
     """
     scene = load(scene)
-    chosen = [_with_radius(find(one, MODULES), radius).resolved(scene) for one in (modules or MODULES)]
-    with_radius = next((module for module in chosen if hasattr(module, "radius")), None)
     entries = []
-    for module in chosen:
-        like = module if hasattr(module, "radius") else with_radius
+    for module, like in with_their_truth(scene, modules or MODULES, radius):
         truth = reference(
             scene,
             size=size,
@@ -88,7 +85,7 @@ def compare_modules(
         comparison = compare(frame, truth, buffer, flip=flip)
         again = [shared_lab().render(scene, module, **settings).frame_ms for _ in range(REPEATS)]
         info = {"scene": scene.source or scene.name, "rays": rays, "renderer": frame.info["renderer"]}
-        entries.append(Entry(_label(module, scene), module, comparison, statistics.median(again), info))
+        entries.append(Entry(label(module, scene), module, comparison, statistics.median(again), info))
     return sorted(entries, key=lambda entry: entry.comparison[buffer].rmse)
 
 
@@ -108,13 +105,26 @@ def sheet(entries: Sequence[Entry], *, limit: float | None = None) -> Image.Imag
     return draw(lines, title, limit=limit)
 
 
+def with_their_truth(
+    scene: Scene, modules: Iterable[str | Module | type[Module]], radius: float | None = None
+) -> list[tuple[Module, Module | None]]:
+    """The modules, resolved, with `radius` if given; each with the one that says the truth's radius and falloff.
+
+    That is itself, or, of one that has no radius, the first that has.
+    """
+    chosen = [_with_radius(find(one, MODULES), radius).resolved(scene) for one in modules]
+    first = next((module for module in chosen if hasattr(module, "radius")), None)
+    return [(module, module if hasattr(module, "radius") else first) for module in chosen]
+
+
 def _with_radius(module: Module, radius: float | None) -> Module:
     if radius is None or not hasattr(module, "radius"):
         return module
     return module.replace(radius=radius)  # type: ignore[return-value]
 
 
-def _label(module: Module, scene: Scene) -> str:
+def label(module: Module, scene: Scene) -> str:
+    """Name and parameters that are not the defaults."""
     defaults = type(module)().resolved(scene).model_dump()
     changed = [f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}"
                for key, value in module.model_dump().items() if value != defaults[key]]  # fmt: skip

@@ -43,12 +43,13 @@ class Relighting:
 
     def to_json(self) -> str:
         """RMSE, bias and relative RMSE under each rotation."""
+        known = [share if np.isfinite(share) else None for share in self.relative]  # JSON has no NaN
         return json.dumps({
             "buffer": self.buffer,
             "rmse": self.rmse,
             "rotations": [
                 {"degrees": degrees, "rmse": one.rmse, "bias": one.bias, "relative": relative}
-                for degrees, one, relative in zip(self.degrees, self.measures, self.relative, strict=True)
+                for degrees, one, relative in zip(self.degrees, self.measures, known, strict=True)
             ],
         })  # fmt: skip
 

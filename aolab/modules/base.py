@@ -90,7 +90,7 @@ class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
-    format), `derived` (name: function of the frame and of "" or "_raw", for what is read off other buffers). `lit` says
+    format), `derived` (name: function of the frame and of "" or "_raw", for what is read off its outputs). `lit` says
     that the estimate itself reads the environment, so that new light asks for a new estimate.
     A module gives `visibility`, and may give `irradiance`, the environment's with occlusion: the lighting reflects it
     in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.

@@ -17,18 +17,19 @@ OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
 BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
 
 
-def _transfer(column: int) -> Callable[[Frame, str], np.ndarray]:
-    """c = c_cos(n) - o, the coefficients 4·column to 4·column + 3, world space; 0 in the background."""
+def _coefficients(frame: Frame, raw: str) -> np.ndarray:
+    """(H, W, 16): c = c_cos(n) - o, world space; 0 in the background. The shader's twin is glsl/s3ho.transfer.glsl."""
+    occlusion = np.concatenate([frame[f"occlusion{i}{raw}"] for i in range(4)], axis=-1)
+    normal = frame.world_normal(f"occlusion0{raw}")
+    to_world = rotation(frame.camera.view_from_world[:3, :3].T).astype(np.float32)
+    transfer = clamped_cosine(normal).astype(np.float32) - occlusion @ to_world.T
+    open = np.clip(transfer[..., :1] * (2 / np.sqrt(np.pi)) * frame.info["parameters"]["directions"], 0, 1)
+    return np.where(normal.any(axis=-1, keepdims=True), transfer * open, 0).astype(np.float32)
 
-    def read(frame: Frame, raw: str) -> np.ndarray:
-        occlusion = np.concatenate([frame[f"occlusion{i}{raw}"] for i in range(4)], axis=-1)
-        here = slice(4 * column, 4 * column + 4)
-        blocked = occlusion @ rotation(frame.camera.view_from_world[:3, :3].T)[here].T
-        normal = frame.world_normal(f"occlusion0{raw}")
-        whole = clamped_cosine(normal)[..., here]
-        return np.where(normal.any(axis=-1, keepdims=True), whole - blocked, 0).astype(np.float32)
 
-    return read
+def _column(i: int) -> Callable[[Frame, str], np.ndarray]:
+    """Coefficients 4 i to 4 i + 3, as the reference's buffers have them."""
+    return lambda frame, raw: frame.once(f"sh{raw}", lambda: _coefficients(frame, raw))[..., 4 * i : 4 * i + 4]
 
 
 def _visibility(frame: Frame, raw: str) -> np.ndarray:
@@ -49,7 +50,7 @@ class S3HO(Marched):
     shader = "s3ho.moments.frag"
     outputs: ClassVar = OCCLUSION
     derived: ClassVar = {
-        **{f"sh{i}": _transfer(i) for i in range(4)},
+        **{f"sh{i}": _column(i) for i in range(4)},
         "visibility": _visibility,
     }
 

@@ -22,7 +22,9 @@ def _bent_normal(frame: Frame, raw: str) -> np.ndarray:
     open = 1 - blocked[..., 3:]
     whole = np.float32(1 / 2 if _is_uniform(frame) else 2 / 3)
     bent = whole * frame.world_normal(name) - blocked[..., :3]
-    return np.where(open > 1e-4, bent / np.maximum(open, np.float32(1e-4)), np.float32(0))
+    mean = bent / np.maximum(open, np.float32(1e-4))
+    mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1)  # of few samples it may come out longer
+    return np.where(open > 1e-4, mean, np.float32(0))
 
 
 def _visibility(frame: Frame, raw: str) -> np.ndarray:

@@ -28,3 +28,13 @@ float shadowOf(int i, vec3 worldPos, vec3 toLight) {
     if (light_kind[i] == POINT) tile += cubeFace(-toLight);
     return shadowAt(shadow_atlas, shadow_from_world[tile], shadow_tile[tile], worldPos);
 }
+
+// The same for lights that are lobes, and so shine on what faces away from them; `facing`: dot(normal, toLight). Such a
+// surface is in its own shadow. A map tells that only roughly where light grazes: the shadow sets in from there on.
+const float TERMINATOR = 0.25;  // of `facing`
+
+float lobesShadowOf(int i, vec3 worldPos, vec3 toLight, float facing) {
+    if (light_tile[i] < 0) return 1.0;
+    float grazing = smoothstep(0.0, TERMINATOR, facing);
+    return grazing > 0.0 ? grazing * shadowOf(i, worldPos, toLight) : 0.0;
+}

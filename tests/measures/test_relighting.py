@@ -2,11 +2,13 @@
 
 import json
 import math
+import sys
 
 import numpy as np
 import pytest
 
 import aolab
+from aolab import cli
 from aolab.measures import relight, relighting_error
 
 SUN = aolab.Environment.sky(sun_direction=(1, 1, 0))
@@ -69,3 +71,35 @@ def test_a_module_against_the_reference(boxes):
     found = relighting_error(boxes, "ssao", **options, radius=0.5, steps=8)
     assert 0 < found.rmse < 1
     assert all(one.pixels > 0 for one in found.measures)
+
+
+def test_the_shell_lists_modules_best_first_with_one_truth(gl, monkeypatch, capsys, tmp_path):
+    monkeypatch.setenv("AOLAB_CACHE", str(tmp_path))
+    small = ["--size", "48x27", "--rays", "8", "--relight", "2"]
+
+    def lines(*more: str) -> list[list[str]]:
+        assert shell(monkeypatch, "compare", "boxes", *small, *more) == 0
+        return [line.split() for line in capsys.readouterr().out.splitlines()[1:]]
+
+    found = lines("--modules", "none,s3ho,ssao")
+    assert {row[0] for row in found} == {"none", "s3ho", "ssao"}
+    errors = [float(row[1]) for row in found]
+    assert errors == sorted(errors)
+    assert found[-1][0] == "none"
+    assert lines("--modules", "ssao", "--radius", "0.1") != lines("--modules", "ssao", "--radius", "1.0")
+    assert shell(monkeypatch, "compare", "boxes", *small, "--modules", "ssao", "--json") == 0
+    (one,) = json.loads(capsys.readouterr().out)
+    assert one["module"] == "ssao"
+    assert len(one["rotations"]) == 2
+
+
+def test_the_shell_refuses_what_relighting_does_not_take(monkeypatch, capsys):
+    assert shell(monkeypatch, "compare", "boxes", "--relight", "2", "--buffer", "sh0") == 2
+    assert "--relight prints errors of ambient light: it takes no -o and no --buffer" in capsys.readouterr().err
+
+
+def shell(monkeypatch, *arguments: str) -> object:
+    monkeypatch.setattr(sys, "argv", ["aolab", *arguments])
+    with pytest.raises(SystemExit) as ended:
+        cli.main()
+    return ended.value.code or 0

@@ -6,6 +6,7 @@ import small_scenes
 
 import aolab
 from aolab import S3HO, DirectionalLight, Environment, Lab, ParameterError, PointLight, Scene
+from aolab.kernels import influence
 from aolab.passes import Pass
 from aolab.spherical_harmonics import (
     clamped_cosine,
@@ -111,16 +112,33 @@ def test_coefficients_turn_with_the_camera(lab, wall):
 
 
 def test_strength_lets_light_through_what_blocks(lab, wall):
-    """One direction, one step: V = 1 - 1 / (1 + λ d), by hand from the visibility at λ = 0 and at a known distance."""
-    module = S3HO(radius=2.0, directions=64, steps=8, filter="none")
-    hard, soft, none = (lab.render(wall, module, strength=strength)["visibility"] for strength in (0.0, 1.0, 100.0))
-    blocked = hard < 0.9
-    assert blocked.sum() > 100
-    # d is between 0 and one radius: 1 - V is between 1/2 and 1 at λ = 1
-    share = (1 - soft[blocked]) / (1 - hard[blocked])
-    assert (share > 0.49).all()
-    assert (share < 1).all()
-    assert np.nanmin(none) > 0.7 > np.nanmin(hard)
+    """Before a wall, the formula over all directions: one with d_x < 0 is blocked at x / -d_x."""
+    radius, strength = 2.0, 3.0
+    module = S3HO(radius=radius, directions=64, steps=64, falloff=0.5, filter="none", thickness=10.0)
+    hard, soft = (
+        lab.render(wall, module, size=SHARP, accumulate=2, strength=value)["visibility"] for value in (0.0, strength)
+    )
+    seen = lab.render(wall, "none", size=SHARP)
+    across = small_scenes.world_positions(seen, wall.camera)[..., 0]
+    u, v = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400)
+    towards_wall = -np.sqrt(u) * np.cos(2 * np.pi * v)  # Malley's method: density cosθ/π
+    for x in (0.3, 0.8):
+        there = (np.abs(across - x) < 0.03) & (seen.world_normal()[..., 1] > 0.9)
+        d = np.where(towards_wall > 1e-9, x / np.maximum(towards_wall, 1e-9), np.inf) / radius
+        reached = influence(d**2, 0.5)
+        assert 1 - hard[there].mean() == pytest.approx(reached.mean(), abs=0.03)
+        assert 1 - soft[there].mean() == pytest.approx((reached / (1 + strength * d)).mean(), abs=0.03)
+
+
+def test_what_is_closed_is_black(lab, wall):
+    """Of one direction the sum of what is blocked is far from the clamped cosine: no light comes of that."""
+    frame = lab.render(under(wall, SUN, LAMP), "s3ho", radius=2.0, directions=1, filter="none", size=SHARP)
+    closed = frame["visibility"] < 2e-3  # of half floats
+    assert closed.sum() > 100
+    assert max(frame["ambient"][closed].max(), frame["direct"][closed].max()) < 5e-3
+    assert np.abs(coefficients(frame)[closed]).max() < 5e-3
+    open = frame["visibility"] > 0.9
+    assert frame["ambient"][open].mean() > 0.1
 
 
 # --- light
@@ -286,14 +304,40 @@ def test_eleven_buffers_accumulate(lab, boxes):
 
 def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall):
     """Patches too, and with SSDO's occlusion of the senders switched off: under lights alone there is none."""
-    lamp = DirectionalLight((-1.0, -0.8, 0.3), (2.0, 2.0, 2.0), shadow=False)
+    lamp = DirectionalLight((-1.0, -0.8, 0.3), (3.0, 2.0, 0.5), shadow=False)
     scene = under(wall, Environment.constant(0), lamp)
-    settings = {"radius": 1.0, "filter": "none", "steps": 8}
+    settings: dict = {"radius": 1.0, "filter": "none", "steps": 8}
     ours = lab.render(scene, "s3ho", indirect=True, light_window=64.0, **settings)["indirect"]
     theirs = lab.render(scene, "ssdo", bounces=1, **settings)["indirect"]
     # a lobe is not a clamped cosine: of this light it has 1.04 on the wall, and 0.98 on the floor
-    assert ours.sum() == pytest.approx(theirs.sum(), rel=0.1)
+    np.testing.assert_allclose(ours.sum(axis=(0, 1)), theirs.sum(axis=(0, 1)), rtol=0.1)
     assert np.corrcoef(ours.ravel(), theirs.ravel())[0, 1] > 0.98
+    broad = lab.render(scene, "s3ho", indirect=True, light_window=1.5, **settings)["indirect"]
+    assert np.abs(broad - ours).max() > 0.05 * ours.max()
+
+
+def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
+    """A roof over floor and wall, in the sun: what lies under it gets none, directly or by a bounce."""
+    roof = small_scenes.box((-5, 4.0, -50), (50, 4.2, 50))
+    sun = DirectionalLight((0.0, -1.0, 0.0), (3.0, 3.0, 3.0))
+    covered = small_scenes.of(*(one.mesh for one in wall.instances), roof, camera=wall.camera)
+    frame = lab.render(under(covered, Environment.constant(0), sun), "s3ho", indirect=True, radius=1.0)
+    assert frame["indirect"].max() < 1e-3
+    open = lab.render(under(wall, Environment.constant(0), sun), "s3ho", indirect=True, radius=1.0)
+    assert open["indirect"].max() > 0.05
+
+
+def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
+    """Layers behind the first one bounce with their own albedo: seen from where the boxes hide each other."""
+    camera = aolab.Camera(eye=(-5.0, 1.2, 0.6), target=(0, 0.5, 0), fov=35)
+    settings = {"indirect": True, "radius": 1.0, "steps": 8, "occluders": "layers", "camera": camera, "filter": "none"}
+
+    class FirstOnly(S3HO):
+        def sends(self) -> bool:
+            return False
+
+    whole, first = (lab.render(boxes, kind(), **settings)["indirect"] for kind in (S3HO, FirstOnly))
+    assert np.abs(whole - first).max() > 0.05
 
 
 def test_what_cannot_be_is_refused():
