@@ -1,6 +1,7 @@
 // S3HO, one bounce: the senders' coefficients under the light of all that shines, Herholz et al. 2012,
 // Eq. 3 to 5: E(P) = (c_env + Σ c_l(P)) · c_SSGI(P). The lights are taken as they are at P, shadow maps included: where a
-// sender stands is not known any more, but it is near. (Past no shadow map the error was up to 45 % larger on six scenes.)
+// sender stands is not known any more, but it is near. (Past no shadow map the error against rays was 43, 17 and 3 % larger
+// on atrium, skyscrapers and boxes, and 0 to 6 % smaller on the other three scenes.)
 // Inputs: viewZ, viewNormal, albedo, bounce0 to bounce6 (s3ho.senders.frag). Output: indirect, linear RGB radiance: albedo/π × E.
 
 #include "lib/space.glsl"
