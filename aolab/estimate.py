@@ -59,9 +59,8 @@ def _accumulated(run: Run, what: Estimate, formats: Mapping[str, str], surfaces:
 
 def _passes(run: Run, what: Estimate, surfaces: Buffers, view: View, seed: int) -> Buffers:
     module = run.module
-    values = module.model_dump()
-    constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
-    uniforms = {**view.uniforms, **values, **run.occluders.uniforms, **module.samples(seed)}
+    constants = module.constants()
+    uniforms = {**view.uniforms, **module.model_dump(), **run.occluders.uniforms, **module.samples(seed)}
     inputs = {**surfaces, **run.occluders.inputs, **run.inputs}
     aliases = {"occluders.glsl": f"occluders/{run.occluders.kind}.glsl"}
     made: Buffers = {}

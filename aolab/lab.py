@@ -178,7 +178,7 @@ class Lab:
         assert scene.environment is not None  # Scene fills it in
         with self._lending(painter):
             tables = self._environments.tables(scene.environment, module.tables())
-            lit_by = lighting.Light(scene, self._shadow_maps(painter, scene), tables)
+            lit_by = lighting.Illumination(scene, self._shadow_maps(painter, scene), tables)
             run = replace(unlit.run, painter=painter, inputs=tables)
             buffers = dict(unlit.buffers)
             if module.lit:

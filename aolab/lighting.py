@@ -4,7 +4,6 @@ import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from types import MappingProxyType
 from typing import Literal
 
 import moderngl
@@ -22,7 +21,6 @@ from .passes import AMBIENT, DIRECT, Pass, reflect
 from .prefiltered import Table
 from .scene import Scene
 from .shadows import ShadowMaps
-from .spherical_harmonics import rotate
 from .view import View, matrix_bytes
 
 ToneMap = Literal["filmic", "linear"]
@@ -77,7 +75,7 @@ class Display:
 
 
 @dataclass(frozen=True)
-class Light:
+class Illumination:
     """What lights a scene: its lights with their shadows, its environment, and `tables` made of that (textures)."""
 
     scene: Scene
@@ -109,19 +107,17 @@ class Light:
 
     def uniforms(self, view: View) -> dict[str, object]:
         """The lights; the coefficients of the environment's irradiance and, in view space, of its radiance."""
-        seen = rotate(self.environment.radiance_sh.T, view.camera.view_from_world[:3, :3])
-        return {**self._uniforms, "view_environment_sh": np.ascontiguousarray(seen, np.float32).tobytes()}
+        seen = view.sh_from_world @ self.environment.radiance_sh
+        return {**self._uniforms, "view_environment_sh": np.ascontiguousarray(seen.T, np.float32).tobytes()}
 
 
 def light(
-    painter: Painter, buffers: Buffers, lit_by: Light, view: View, module: Module, occluders: Occluders
+    painter: Painter, buffers: Buffers, lit_by: Illumination, view: View, module: Module, occluders: Occluders
 ) -> Buffers:
     """`direct` and `ambient` radiance, and what else the module's lighting passes give."""
-    values = module.model_dump()
-    constants = {key: value for key, value in values.items() if isinstance(value, (bool, int, float))}
     lit: Buffers = {}
     for step in module.lighting():
-        lit |= _run(painter, step, buffers, lit_by, view, constants, values, occluders)
+        lit |= _run(painter, step, buffers, lit_by, view, module, occluders)
     return lit
 
 
@@ -133,13 +129,13 @@ def _run(
     painter: Painter,
     step: Pass,
     buffers: Buffers,
-    lit_by: Light,
+    lit_by: Illumination,
     view: View,
-    constants: Mapping[str, Constant] = MappingProxyType({}),
-    values: Mapping[str, object] = MappingProxyType({}),
+    module: Module | None = None,
     occluders: Occluders | None = None,
 ) -> Buffers:
     """One lighting pass. The occluders matter only where samples are taken towards the lights."""
+    values, constants = (module.model_dump(), module.constants()) if module else ({}, {})
     if occluders is None or not values.get("light_steps"):
         occluders = Occluders("depth")  # the shader asks nothing of it
     return painter.run(
@@ -152,7 +148,7 @@ def _run(
     )
 
 
-def senders(painter: Painter, buffers: Buffers, lit_by: Light, view: View, occluders: Occluders) -> Buffers:
+def senders(painter: Painter, buffers: Buffers, lit_by: Illumination, view: View, occluders: Occluders) -> Buffers:
     """`sender`, what leaves each surface before any bounce, direct + ambient light; and those of hidden surfaces.
 
     The occlusion of hidden surfaces was not estimated: the environment reaches them unhindered.

@@ -91,13 +91,12 @@ class Scene:
             object.__setattr__(self, "camera", Camera.framing(self.bounds))
 
     def _checked_lights(self) -> tuple[Light, ...]:
-        lights = tuple(self.lights) if isinstance(self.lights, Iterable) else (self.lights,)
-        for light in lights:
-            if not isinstance(light, Light) or lights == (self.lights,):
-                raise SceneError(
-                    f"scene '{self.name}': lights = {self.lights!r:.80} is not a sequence of lights: "
-                    "DirectionalLight, PointLight, SpotLight"
-                )
+        lights = tuple(self.lights) if isinstance(self.lights, Iterable) else None
+        if lights is None or not all(isinstance(light, Light) for light in lights):
+            raise SceneError(
+                f"scene '{self.name}': lights = {self.lights!r:.80} is not a sequence of lights: "
+                "DirectionalLight, PointLight, SpotLight"
+            )
         return lights
 
     @cached_property

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from .camera import Camera
+from .spherical_harmonics import rotation
 
 Size = tuple[int, int]
 
@@ -42,6 +43,11 @@ class View:
             "world_from_view": matrix_bytes(np.linalg.inv(view_from_world)),
             "clip_from_view": matrix_bytes(self.camera.clip_from_view(self.size, self.bounds)),
         }
+
+    @cached_property
+    def sh_from_world(self) -> np.ndarray:
+        """(16, 16): turns spherical harmonics of world space into those of view space."""
+        return rotation(self.camera.view_from_world[:3, :3])
 
     def scaled(self, scale: float) -> "View":
         """The same view at a share of the resolution, at least one pixel a side."""

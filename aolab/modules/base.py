@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self, TypeVar
 from pydantic import Field
 
 from ..errors import ParameterError, suggestion
+from ..gl.source import Constant
 from ..parameters import AUTO, Parameters, parameter
 from ..passes import AMBIENT, DIRECT, Estimate, Pass, reflect
 from ..scene import Scene
@@ -120,6 +121,10 @@ class Module(Parameters):
         ge=SCALES[0],
         le=SCALES[1],
     )
+
+    def constants(self) -> dict[str, Constant]:
+        """Parameters that a shader may take as compile-time values."""
+        return {key: value for key, value in self.model_dump().items() if isinstance(value, (bool, int, float))}
 
     def passes(self) -> list[Pass]:
         """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..frame import Frame
 from ..parameters import parameter
-from ..passes import DIRECT, Pass
+from ..passes import AMBIENT, DIRECT, Pass
 from ..scene import Scene
 from ..spherical_harmonics import clamped_cosine, rotation
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
@@ -87,7 +87,7 @@ class S3HO(Marched):
     def lighting(self) -> list[Pass]:
         lobes = Pass("direct", "s3ho.direct.frag", DIRECT.outputs)
         passes = [lobes if self.lights == "lobes" else DIRECT]
-        passes.append(Pass("ambient", "s3ho.ambient.frag", {"ambient": "RGBA16F"}))
+        passes.append(Pass("ambient", "s3ho.ambient.frag", AMBIENT.outputs))
         if self.indirect:
             passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": "RGBA16F"}))
         return passes

@@ -40,7 +40,8 @@ class SSBN(Marched):
     """A cone around the mean open direction stands for all that is open; the environment is looked up in it.
 
     Its map is averaged over cones beforehand, in eight sizes. The estimate knows no light, but a new environment needs
-    new averages, and the same bent normal means the same light: in corners both sides get one colour.
+    new averages. The same bent normal means the same light: with the paper's `uniform` weighting, the two sides of a
+    corner get nearly one colour.
     """
 
     name = "ssbn"
