@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import aolab
-from aolab.sheet import gray
+from aolab.pictures.sheet import gray
 
 Path("out").mkdir(exist_ok=True)
 lab = aolab.Lab(size=(480, 270))

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import aolab
 from aolab.modules import MODULES
-from aolab.sheet import gray
+from aolab.pictures.sheet import gray
 
 SIZE = (640, 360)
 

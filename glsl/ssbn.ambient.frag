@@ -4,7 +4,7 @@
 //   ∫ cos²θ dω / ∫ cosθ dω = 2/3 (1 + c + c²) / (1 + c)  over the density cosθ/π,
 //   ∫ cosθ dω / ∫ dω = 1/2 (1 + c)                       if directions are uniform.
 // Where all is open c is 0, and E is exactly the environment's irradiance.
-// Inputs: viewNormal, albedo, blocked_direction; cone_environment, the mean radiance in cones (aolab/cones.py).
+// Inputs: viewNormal, albedo, blocked_direction; cone_environment, the mean radiance in cones (aolab/scene/cones.py).
 // Output: ambient, linear RGB radiance: albedo × visibility × mean radiance.
 
 #include "lib/octahedral.glsl"

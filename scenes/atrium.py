@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, Scene, Texture
-from aolab.shapes import block, column, in_range, lathe, loft, placed
+from aolab.scene.shapes import block, column, in_range, lathe, loft, placed
 
 BAY, LONG, SHORT, AISLE, THICK = 3.6, 7, 2, 3.2, 0.6  # metres a bay; bays along x and z; depth of the aisle; walls
 LENGTH, WIDTH = LONG * BAY, SHORT * BAY

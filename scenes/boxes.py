@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, Environment, Instance, Material, Mesh, Scene, SpotLight
-from aolab.shapes import block, in_range, loft, placed
+from aolab.scene.shapes import block, in_range, loft, placed
 
 PINK, TURQUOISE = np.array((1.0, 0.13, 0.36)), np.array((0.04, 0.78, 0.68))
 PAPER = Material((0.8, 0.8, 0.8), name="paper")

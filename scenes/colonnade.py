@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Scene
-from aolab.shapes import beam, block, column, in_range, placed
+from aolab.scene.shapes import beam, block, column, in_range, placed
 
 HEIGHT, RADIUS, SPACING, NAVE = 4.4, 0.36, 2.6, 4.4  # metres
 EYE, FRONT = np.array((-4.9, 2.3, 4.8)), np.array((-NAVE / 2, 0, 0))  # the camera, and the column that hides another

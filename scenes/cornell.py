@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, Environment, Instance, Material, Mesh, PointLight, Scene
-from aolab.shapes import block, in_range, loft, placed, ring
+from aolab.scene.shapes import block, in_range, loft, placed, ring
 
 WIDTH, HEIGHT, DEPTH, WALL = 5.56, 5.488, 5.592, 0.2
 LAMP = (1.3, 1.05)  # width, depth of the opening in the ceiling

@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, Scene
-from aolab.shapes import in_range, loft, placed, ring, square
+from aolab.scene.shapes import in_range, loft, placed, ring, square
 
 BLOCK, STREET, STOREY = 2.0, 0.8, 0.34
 GLASS = (0.62, 0.68, 0.76)  # of the wall's albedo

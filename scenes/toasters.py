@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, Scene
-from aolab.shapes import block, circle, in_range, lathe, loft, placed, ring, rounded
+from aolab.scene.shapes import block, circle, in_range, lathe, loft, placed, ring, rounded
 
 LOOP, HOPS = 4.0, 8  # seconds, and hops in them
 ENAMEL = ((0.80, 0.22, 0.16), (0.16, 0.52, 0.50), (0.82, 0.58, 0.16), (0.78, 0.74, 0.66), (0.24, 0.36, 0.62))

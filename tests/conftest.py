@@ -15,15 +15,23 @@ import small_scenes
 
 import aolab
 from aolab import paths
-from aolab.draw import Painter
 from aolab.gl import context, texture
 from aolab.gl.program import Programs
 from aolab.gl.texture import Pool
-from aolab.passes import Pass
+from aolab.modules.passes import Pass
+from aolab.pipeline.pass_runner import Painter
 
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
 
 CHECKOUT = Path(__file__).parents[1]
+
+
+@pytest.fixture(autouse=True)
+def cache_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A cache of the test's own: its results reach neither another test nor the user's cache."""
+    folder = tmp_path_factory.mktemp("cache")
+    monkeypatch.setenv("AOLAB_CACHE", str(folder))
+    return folder / "references"
 
 
 @pytest.fixture(scope="session")

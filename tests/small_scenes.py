@@ -4,8 +4,8 @@ import numpy as np
 import trimesh
 
 from aolab import Camera, Environment, Frame, Instance, Material, Mesh, Scene
-from aolab.lights import Light
-from aolab.view import View
+from aolab.scene.lights import Light
+from aolab.scene.view import View
 
 WHITE = Material((1.0, 1.0, 1.0))
 SKY = Environment.constant((1.0, 1.0, 1.0))

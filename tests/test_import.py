@@ -36,7 +36,7 @@ def test_naming_everything_makes_no_context(python):
 
 
 def test_the_shells_help_loads_nothing_heavy(python):
-    run = "import sys; sys.argv = ['aolab']\nfrom aolab.cli import main\ntry: main()\nexcept SystemExit: pass\n"
+    run = "import sys; sys.argv = ['aolab']\nfrom aolab.shell.cli import main\ntry: main()\nexcept SystemExit: pass\n"
     done = python(run + f"print('LOADED', *(name for name in {HEAVY} if name in sys.modules))")
     assert done.stdout.splitlines()[-1] == "LOADED", done.stdout
 

@@ -10,8 +10,8 @@ import pytest
 from PIL import Image
 
 from aolab import FileError
-from aolab.metadata import read_png, save_png
 from aolab.output import check_writable, replacing
+from aolab.pictures.metadata import read_png, save_png
 
 PICTURE = np.zeros((2, 3, 3), np.uint8)
 

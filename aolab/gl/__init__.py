@@ -1,1 +1,1 @@
-"""Everything that talks to OpenGL: context, shader sources, programs, textures, geometry, timing."""
+"""All use of OpenGL."""

@@ -3,7 +3,7 @@
 from os import PathLike
 
 from ..errors import ParameterError
-from ..scene import Scene
+from ..scene.scene import Scene
 from .named import SceneDescription, describe_scene, load_scene, scene_names
 
 __all__ = ["SceneDescription", "describe_scene", "load", "scene_names"]

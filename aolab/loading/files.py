@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ..errors import Error, FileError, Notice, SceneError, suggestion
-from ..mesh import Texture
-from ..scene import Scene
+from ..pictures.images import read_image
+from ..scene.mesh import Texture
+from ..scene.scene import Scene
 from .folder import Folder, decoded
-from .images import read_image
+from .reading import read_trimesh
 
 if TYPE_CHECKING:
-    import trimesh
+    pass
 
 FORMATS = {".glb": "glTF", ".gltf": "glTF", ".obj": "Wavefront OBJ", ".ply": "PLY", ".stl": "STL"}
 
@@ -73,18 +74,6 @@ def _named_errors(path: Path, file_format: str) -> Iterator[None]:
     except Exception as error:
         reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
         raise FileError(f"cannot read {path} as {file_format}: {reason}") from error
-
-
-def read_trimesh(file: object, file_type: str, resolver: object) -> "trimesh.Scene":
-    """What trimesh makes of an open file, unchanged: nothing merged, no network."""
-    import trimesh
-
-    with warnings.catch_warnings():
-        # images are checked and decoded by `read_image`, which refuses bombs; NaN are refused by `Mesh`
-        warnings.simplefilter("ignore")
-        # NumPy's word for an OBJ with text where numbers belong, after which the rest would be lost
-        warnings.filterwarnings("error", "string or file could not be read", DeprecationWarning)
-        return trimesh.load_scene(file, file_type=file_type, resolver=resolver, process=False)  # type: ignore[arg-type]
 
 
 def _scene_from_other(path: Path, folder: Folder) -> Scene:

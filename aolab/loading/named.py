@@ -15,7 +15,7 @@ from urllib.parse import quote, unquote
 
 from .. import paths
 from ..errors import Error, FileError, ParameterError, SceneError, suggestion
-from ..scene import Scene
+from ..scene.scene import Scene
 
 TRUTHS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
 

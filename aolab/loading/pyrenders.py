@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 
-from ..camera import Camera
-from ..environment import Environment
 from ..errors import Notice, SceneError
-from ..lights import DirectionalLight, Light, PointLight, SpotLight
-from ..mesh import Material, Mesh, Texture
-from ..scene import Instance, Scene
+from ..scene.camera import Camera
+from ..scene.environment import Environment
+from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from ..scene.mesh import Material, Mesh, Texture
+from ..scene.scene import Instance, Scene
 from .trimeshes import alpha_of, camera_from_pose, linear_colors, lit_scene
 
 TRIANGLES = 4  # GL's number, which pyrender uses

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from ..camera import Camera
-from ..environment import Environment
 from ..errors import Notice, SceneError
-from ..lights import Light
-from ..mesh import Material, Mesh, Texture
-from ..scene import Instance, Scene
-from .images import MAX_PIXELS, linear_from_srgb
+from ..pictures.images import MAX_PIXELS, linear_from_srgb
+from ..scene.camera import Camera
+from ..scene.environment import Environment
+from ..scene.lights import Light
+from ..scene.mesh import Material, Mesh, Texture
+from ..scene.scene import Instance, Scene
 
 MASK_CUTOFF = 0.5  # glTF's default alphaCutoff; also where blended surfaces are cut, as there is no blending
 

@@ -1,7 +1,6 @@
 """How far a result is from the truth: measures, where in the image they are taken, and pictures of the error."""
 
 from .comparison import Comparison, compare
-from .ranking import Entry, compare_modules, sheet
-from .relighting import Relighting, relight, relighting_error
+from .turning_light import Relighting, relight, relighting_error
 
-__all__ = ["Comparison", "Entry", "Relighting", "compare", "compare_modules", "relight", "relighting_error", "sheet"]
+__all__ = ["Comparison", "Relighting", "compare", "relight", "relighting_error"]

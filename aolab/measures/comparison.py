@@ -15,42 +15,11 @@ from PIL import Image
 
 from ..errors import Notice, ParameterError, suggestion
 from ..output import replacing
-from .inputs import Buffers, common, label, regions, size_of
-from .kinds import Kind, kind_of, picture
+from .buffer import BufferComparison
 from .metrics import Measures, angles, differences, psnr
+from .pairing import Buffers, common, label, regions, size_of
 from .perception import flip_map, ssim_map
-
-
-@dataclass(frozen=True, eq=False)
-class BufferComparison:
-    """One buffer: `result` and `reference` (H, W, C) float32, the `foreground` (H, W) they are compared on.
-
-    `measures` by region; the measures of all the foreground are attributes: `comparison["visibility"].rmse`.
-    """
-
-    name: str
-    kind: Kind
-    result: np.ndarray
-    reference: np.ndarray
-    foreground: np.ndarray
-    measures: dict[str, Measures]
-
-    def __getattr__(self, name: str) -> float:
-        if name in Measures.__dataclass_fields__:
-            return getattr(self.measures["all"], name)
-        raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
-
-    @property
-    def error(self) -> np.ndarray:
-        """(H, W) float64, NaN where nothing is compared: each pixel's error, as its kind has it (`Kind.error`)."""
-        difference = self.result.astype(np.float64) - self.reference
-        if self.kind.error == "angle":
-            values = angles(self.result, self.reference)
-        elif self.kind.error == "norm":
-            values = np.linalg.norm(difference, axis=2)
-        else:
-            values = difference.mean(axis=2)
-        return np.where(self.foreground, values, np.nan)
+from .quantities import kind_of, picture
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,10 +7,10 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import map_coordinates
 
-from ..camera import Camera
 from ..errors import ParameterError
-from ..frame import Frame
-from ..view import ray_scale_offset
+from ..pipeline.frame import Frame
+from ..scene.camera import Camera
+from ..scene.view import ray_scale_offset
 from .regions import nearness
 
 SAME_SURFACE = 0.01  # share of the distance: the filters' (PLANE_TOLERANCE in glsl/lib/filter.glsl)

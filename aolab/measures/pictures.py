@@ -7,8 +7,8 @@ import numpy as np
 from PIL import Image
 
 from ..errors import ParameterError
-from .comparison import BufferComparison
-from .kinds import picture
+from .buffer import BufferComparison
+from .quantities import picture
 
 try:
     from matplotlib import colormaps

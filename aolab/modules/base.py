@@ -7,15 +7,15 @@ from pydantic import Field
 
 from ..errors import ParameterError, suggestion
 from ..gl.source import Constant
-from ..parameters import AUTO, Parameters, parameter
-from ..passes import AMBIENT, DIRECT, Estimate, Pass, reflect
-from ..scene import Scene
+from ..scene.scene import Scene
+from .parameters import AUTO, Parameters, parameter
+from .passes import AMBIENT, DIRECT, Estimate, Pass, reflect
+from .readable import Readable
 
 if TYPE_CHECKING:
     import numpy as np
 
-    from ..frame import Frame
-    from ..prefiltered import Table
+    from ..scene.prefiltered import Table
 
 # Common parameters: one meaning everywhere (see "The face of the package" in the design)
 Radius = Annotated[
@@ -102,7 +102,7 @@ class Module(Parameters):
     paper: ClassVar[str] = ""
     shader: ClassVar[str] = ""
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
-    derived: ClassVar[Mapping[str, "Callable[[Frame, str], np.ndarray]"]] = {}
+    derived: ClassVar[Mapping[str, "Callable[[Readable, str], np.ndarray]"]] = {}
     lit: ClassVar[bool] = False
 
     occluders: Literal["depth", "layers", "views"] = parameter(

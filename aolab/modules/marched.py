@@ -1,6 +1,6 @@
 """What methods share that march directions: the Python side of glsl/lib/march.glsl."""
 
-from ..kernels import cosine_hemisphere
+from ..maths.sampling import cosine_hemisphere
 from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
 
 

@@ -5,19 +5,19 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from ..frame import Frame
-from ..parameters import parameter
-from ..passes import AMBIENT, DIRECT, Pass
-from ..scene import Scene
-from ..spherical_harmonics import clamped_cosine, rotation
+from ..maths.harmonics import clamped_cosine, rotation
+from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
 from .marched import Marched
+from .parameters import parameter
+from .passes import AMBIENT, DIRECT, Pass
+from .readable import Readable
 
 OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
 BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
 
 
-def _coefficients(frame: Frame, raw: str) -> np.ndarray:
+def _coefficients(frame: Readable, raw: str) -> np.ndarray:
     """(H, W, 16): c = c_cos(n) - o, world space; 0 in the background. The shader's twin is glsl/s3ho.transfer.glsl."""
     occlusion = np.concatenate([frame[f"occlusion{i}{raw}"] for i in range(4)], axis=-1)
     normal = frame.world_normal(f"occlusion0{raw}")
@@ -27,12 +27,12 @@ def _coefficients(frame: Frame, raw: str) -> np.ndarray:
     return np.where(normal.any(axis=-1, keepdims=True), transfer * open, 0).astype(np.float32)
 
 
-def _column(i: int) -> Callable[[Frame, str], np.ndarray]:
+def _column(i: int) -> Callable[[Readable, str], np.ndarray]:
     """Coefficients 4 i to 4 i + 3, as the reference's buffers have them."""
     return lambda frame, raw: frame.once(f"sh{raw}", lambda: _coefficients(frame, raw))[..., 4 * i : 4 * i + 4]
 
 
-def _visibility(frame: Frame, raw: str) -> np.ndarray:
+def _visibility(frame: Readable, raw: str) -> np.ndarray:
     """(1/π) ∫ V cosθ dω, by the first coefficient: ∫ f y_0 dω, where y_0 = 1/√4π is constant."""
     return np.clip(1 - np.float32(2 / np.sqrt(np.pi)) * frame[f"occlusion0{raw}"][..., 0], 0, 1)
 

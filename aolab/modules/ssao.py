@@ -1,7 +1,7 @@
 """Screen-space ambient occlusion over the hemisphere."""
 
-from ..parameters import parameter
 from .marched import Marched
+from .parameters import parameter
 
 
 class SSAO(Marched):

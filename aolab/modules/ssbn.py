@@ -4,18 +4,18 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from ..cones import SLICES, TEXELS, Cones
-from ..frame import Frame
-from ..parameters import parameter
-from ..passes import AMBIENT, DIRECT, Pass
+from ..scene.cones import SLICES, TEXELS, Cones
 from .marched import Marched
+from .parameters import parameter
+from .passes import AMBIENT, DIRECT, Pass
+from .readable import Readable
 
 
-def _is_uniform(frame: Frame) -> bool:
+def _is_uniform(frame: Readable) -> bool:
     return frame.info["parameters"]["weighting"] == "uniform"
 
 
-def _bent_normal(frame: Frame, raw: str) -> np.ndarray:
+def _bent_normal(frame: Readable, raw: str) -> np.ndarray:
     """The mean open direction, world space; 0 where nothing is open, and in the background."""
     name = f"blocked_direction{raw}"
     blocked = frame[name]
@@ -27,7 +27,7 @@ def _bent_normal(frame: Frame, raw: str) -> np.ndarray:
     return np.where(open > 1e-4, mean, np.float32(0))
 
 
-def _visibility(frame: Frame, raw: str) -> np.ndarray:
+def _visibility(frame: Readable, raw: str) -> np.ndarray:
     """(1/π) ∫ V cosθ dω; of uniform directions it is the part of the mean direction along the normal."""
     name = f"blocked_direction{raw}"
     blocked = frame[name]

@@ -3,12 +3,12 @@
 from math import pi
 from typing import ClassVar, Literal
 
-from ..parameters import parameter
-from ..passes import Pass
-from ..prefiltered import Blurred
-from ..scene import Scene
+from ..scene.prefiltered import Blurred
+from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
 from .marched import Marched
+from .parameters import parameter
+from .passes import Pass
 
 
 class SSDO(Marched):

@@ -1,3 +1,3 @@
-"""The papers' figures and tables, drawn anew: PAPER.py holds `FIGURES`, a function each; see `aolab/reproduce.py`."""
+"""The figures and tables of the papers. Each paper is a folder; its table `FIGURES` lists a function a figure."""
 
 PAPERS = ("ssdo", "s3ho")

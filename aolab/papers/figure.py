@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from ..frame import Frame
+from ..pipeline.frame import Frame
+from ..scene.view import View
 from ..truth.points import pixel_rays
-from ..view import View
 
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear sRGB (ITU-R BT.709)
 

@@ -5,7 +5,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
-from ..frame import Frame
+from ..pipeline.frame import Frame
 
 Key = TypeVar("Key", bound=Hashable)
 REPEATS = 9  # turns, of which the median is told

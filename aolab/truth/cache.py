@@ -18,7 +18,7 @@ import platformdirs
 from .. import paths
 from ..errors import FileError, Notice
 from ..output import replacing
-from ..scene import Scene
+from ..scene.scene import Scene
 
 BUDGET = 2_000_000_000  # bytes; the entries used longest ago go first
 

@@ -7,10 +7,10 @@ from typing import Literal
 
 import numpy as np
 
-from ..environment import Environment
-from ..kernels import influence
-from ..lights import Light
-from ..spherical_harmonics import basis
+from ..maths.harmonics import basis
+from ..maths.sampling import influence
+from ..scene.environment import Environment
+from ..scene.lights import Light
 from .casters import Hits
 from .hemisphere import frames, strata
 from .lighting import environment_radiance, irradiance

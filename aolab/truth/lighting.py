@@ -4,8 +4,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from ..environment import Environment, uv_from_direction
-from ..lights import DirectionalLight, Light, SpotLight
+from ..scene.environment import Environment, uv_from_direction
+from ..scene.lights import DirectionalLight, Light, SpotLight
 from .world import World, bilinear
 
 

@@ -13,14 +13,14 @@ from typing import Any
 
 import numpy as np
 
-from ..api import shared_lab
-from ..camera import Camera
 from ..errors import Error, ParameterError, suggestion
-from ..frame import Frame
 from ..loading import load
-from ..scene import Scene
+from ..pipeline.api import shared_lab
+from ..pipeline.frame import Frame
+from ..scene.camera import Camera
+from ..scene.scene import Scene
+from ..scene.view import Size, View
 from ..version import __version__
-from ..view import Size, View
 from . import cache as disk
 from .mitsuba_scene import Description, Image, describe
 from .picture import shown

@@ -5,13 +5,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..environment import Environment
 from ..errors import SceneError
-from ..lights import DirectionalLight, Light, PointLight, SpotLight
-from ..loading.images import linear_from_srgb
-from ..mesh import Mesh
-from ..scene import Instance, Scene
-from ..view import View
+from ..pictures.images import linear_from_srgb
+from ..scene.environment import Environment
+from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from ..scene.mesh import Mesh
+from ..scene.scene import Instance, Scene
+from ..scene.view import View
 
 # Mitsuba lifts rays off a surface by 9e-5 × (1 + the largest coordinate). With a scene of this radius the 1 does not
 # matter, and the lift is the same share of every scene, whatever its unit.

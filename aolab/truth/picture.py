@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from ..environment import Environment
-from ..view import View
+from ..scene.environment import Environment
+from ..scene.view import View
 from .lighting import environment_radiance
 from .points import pixel_rays
 

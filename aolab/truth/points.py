@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..frame import Frame
-from ..scene import Scene
-from ..view import View, ray_scale_offset
+from ..pipeline.frame import Frame
+from ..scene.scene import Scene
+from ..scene.view import View, ray_scale_offset
 from .world import World
 
 # The G-buffer's normals are half floats: three components, each rounded by up to 2^-12. A normal this close to the

@@ -7,18 +7,18 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ..api import shared_lab
-from ..camera import Camera
 from ..errors import ParameterError, suggestion
-from ..frame import Frame
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
 from ..modules import MODULES, Module
 from ..modules.base import find
-from ..scene import Scene
+from ..pipeline.api import shared_lab
+from ..pipeline.frame import Frame
+from ..scene.camera import Camera
+from ..scene.scene import Scene
+from ..scene.view import View
 from ..version import __version__
-from ..view import View
 from . import cache as disk
 from .buffers import BUFFERS
 from .casters import Engine
@@ -67,7 +67,7 @@ def reference(
     - `indirect`: albedo/π × the light that blockers reflect, as far as they block: one diffuse bounce of the lights
       and of the environment, with their shadows;
     - `bent_normal`: Σ V ω / Σ V over the same rays, world space; its length is 2/3 where all is open;
-    - `sh0` .. `sh3`: c_i = ∫ V y_i cosθ dω, four a buffer, the basis of `aolab.spherical_harmonics`, world space;
+    - `sh0` .. `sh3`: c_i = ∫ V y_i cosθ dω, four a buffer, the basis of `aolab.maths.harmonics`, world space;
     - `obscurance`: O = (1/π) ∫ μ(d) cosθ dω with the `measure` μ (classical, linear, sqrt, exponential with
       σ = 1/radius); `transfer`: W = O / (1 - (1/π) ∫ (1 - μ) a cosθ dω), a the blockers' albedo (Umenhoffer, Tóth and
       Szirmay-Kalos 2009, eq. 6); `transfer_multibounce`: the same by path tracing under a sky of 1, at most `bounces`

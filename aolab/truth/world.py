@@ -4,9 +4,9 @@ from functools import cached_property
 
 import numpy as np
 
-from ..loading.images import linear_from_srgb
-from ..mesh import Texture
-from ..scene import Instance, Scene
+from ..pictures.images import linear_from_srgb
+from ..scene.mesh import Texture
+from ..scene.scene import Instance, Scene
 from .casters import Engine, Hits, caster
 
 # Origins are lifted off their surface by this many units in the last place of the scene's extent. Embree works in

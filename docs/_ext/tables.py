@@ -8,10 +8,10 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from aolab.cli import app as shell
 from aolab.loading import describe_scene, scene_names
 from aolab.modules import MODULES, Module
-from aolab.parameters import describe
+from aolab.modules.parameters import describe
+from aolab.shell.cli import app as shell
 
 HELP_COLUMNS = 84  # what a page shows without scrolling
 

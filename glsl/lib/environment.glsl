@@ -1,4 +1,4 @@
-// Where an equirectangular environment map holds a direction (the NumPy twin is uv_from_direction, aolab/environment.py).
+// Where an equirectangular environment map holds a direction (the NumPy twin is uv_from_direction, aolab/scene/environment.py).
 //
 // Convention: u = 0.5 + atan(d.x, -d.z) / 2pi, v = acos(d.y) / pi: v = 0 is the map's first row and looks up (+y), the
 // centre column looks down -z, u grows towards +x. Uploaded first row first, v needs no flip. Sample with repeat in u,

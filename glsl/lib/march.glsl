@@ -1,7 +1,7 @@
 // What a pixel looks into: its directions, each marched in a few points until something blocks. The parameters that
 // methods share have their one meaning here. Positions and vectors are in view space, lengths in scene units.
 //
-// kernel[i]: xyz a direction around +z times its reach in radii (aolab/kernels.py: the falloff is in there),
+// kernel[i]: xyz a direction around +z times its reach in radii (aolab/maths/sampling.py: the falloff is in there),
 //            w its first point's offset, in steps.
 
 #include "lib/space.glsl"

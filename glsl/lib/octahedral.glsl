@@ -1,6 +1,6 @@
 // Where an octahedral map holds a direction: the sphere folded onto a square, by a few additions and one division
 // (Engelhardt and Dachsbacher 2008, "Octahedron Environment Maps"). The NumPy twin is octahedral_uv in
-// aolab/prefiltered.py. Centre: up (+y); corners: down; u grows towards +x, v towards +z.
+// aolab/scene/prefiltered.py. Centre: up (+y); corners: down; u grows towards +x, v towards +z.
 
 // `worldDir`: world space, any length above 0. Returns uv in [0, 1].
 vec2 octahedralUv(vec3 worldDir) {

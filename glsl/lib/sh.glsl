@@ -1,4 +1,4 @@
-// Real spherical harmonics, bands 0 to 3 (the NumPy twin is aolab/spherical_harmonics.py).
+// Real spherical harmonics, bands 0 to 3 (the NumPy twin is aolab/maths/harmonics.py).
 //
 // Convention: the basis listed by Sloan 2008, "Stupid Spherical Harmonics (SH) Tricks", appendix A2: orthonormal, with
 // the Condon-Shortley sign (y_1^-1 = -sqrt(3/4pi) y). Coefficient i = l (l + 1) + m holds band l, order m. Directions

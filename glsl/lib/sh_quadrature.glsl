@@ -1,5 +1,5 @@
 // Rotation and product of spherical harmonics, bands 0 to 3, by quadrature over the sphere: plain, exact and slow.
-// The NumPy twins are in aolab/spherical_harmonics.py.
+// The NumPy twins are in aolab/maths/harmonics.py.
 
 #include "lib/sh.glsl"
 

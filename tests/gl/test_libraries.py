@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import aolab
-from aolab.view import View
+from aolab.scene.view import View
 
 RNG = np.random.default_rng(3)
 

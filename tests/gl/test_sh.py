@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from aolab import spherical_harmonics as sh
+from aolab.maths import harmonics as sh
 
 ATOL = 1e-5  # float32, for coefficients around 1
 A, B = np.random.default_rng(1).normal(size=(2, 16)).astype("f4")

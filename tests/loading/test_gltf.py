@@ -10,7 +10,7 @@ from gltf_file import GltfFile, png, png_header
 
 import aolab
 from aolab.errors import FileError, Notice, SceneError
-from aolab.lights import DirectionalLight, PointLight, SpotLight
+from aolab.scene.lights import DirectionalLight, PointLight, SpotLight
 
 HALF_TURN_Z = [0, 0, 1, 0]
 TURN_Y = [0, math.sqrt(0.5), 0, math.sqrt(0.5)]  # +90° about y: -z becomes -x

@@ -16,8 +16,8 @@ TOASTERS = '''
 import functools
 import numpy as np
 import aolab
-from aolab.mesh import Mesh
-from aolab.scene import Instance, Scene
+from aolab.scene.mesh import Mesh
+from aolab.scene.scene import Instance, Scene
 
 @functools.cache
 def triangle():
@@ -43,7 +43,7 @@ def scenes(tmp_path, monkeypatch):
     """A folder of scenes with `toasters` in it."""
     (tmp_path / "toasters.py").write_text(TOASTERS)
     (tmp_path / "_parts.py").write_text("")
-    (tmp_path / "box.py").write_text("from aolab.mesh import Mesh\ndef box():\n    pass\n")
+    (tmp_path / "box.py").write_text("from aolab.scene.mesh import Mesh\ndef box():\n    pass\n")
     monkeypatch.setenv("AOLAB_SCENES", str(tmp_path))
     paths._find.cache_clear()
     yield tmp_path

@@ -6,7 +6,7 @@ import trimesh
 
 import aolab
 from aolab.errors import Notice, SceneError
-from aolab.lights import DirectionalLight, PointLight
+from aolab.scene.lights import DirectionalLight, PointLight
 
 pyrender = pytest.importorskip("pyrender", reason="pyrender is an extra", exc_type=Exception)
 

@@ -1,13 +1,7 @@
-"""A cache of each test's own, and pictures to compare."""
+"""Pictures to compare."""
 
 import numpy as np
 import pytest
-
-
-@pytest.fixture(autouse=True)
-def cache_folder(tmp_path, monkeypatch):
-    """Nothing that a test computes reaches another, or the user's cache."""
-    monkeypatch.setenv("AOLAB_CACHE", str(tmp_path / "cache"))
 
 
 @pytest.fixture

@@ -8,20 +8,10 @@ import numpy as np
 import pytest
 import small_scenes
 
-from aolab import (
-    DirectionalLight,
-    Environment,
-    Frame,
-    Module,
-    ParameterError,
-    Pass,
-    PointLight,
-    Scene,
-    paths,
-)
+from aolab import DirectionalLight, Environment, Frame, Module, ParameterError, Pass, PointLight, Scene, paths
 from aolab.gl.texture import FORMATS
 from aolab.modules import MODULES
-from aolab.parameters import describe
+from aolab.modules.parameters import describe
 
 CHECKOUT = Path(__file__).parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor

@@ -9,7 +9,7 @@ import small_scenes
 import aolab
 from aolab import Module, ParameterError, Pass, parameter
 from aolab.modules.base import Directions, Radius
-from aolab.passes import Estimate
+from aolab.modules.passes import Estimate
 
 
 class HeightFog(Module):

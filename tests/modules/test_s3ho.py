@@ -6,17 +6,9 @@ import small_scenes
 
 import aolab
 from aolab import S3HO, DirectionalLight, Environment, Lab, ParameterError, PointLight, Scene
-from aolab.kernels import influence
-from aolab.passes import Pass
-from aolab.spherical_harmonics import (
-    clamped_cosine,
-    evaluate,
-    hanning,
-    irradiance,
-    light_lobe,
-    rotate,
-    zonal_lobe,
-)
+from aolab.maths.harmonics import clamped_cosine, evaluate, hanning, irradiance, light_lobe, rotate, zonal_lobe
+from aolab.maths.sampling import influence
+from aolab.modules.passes import Pass
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
 SUN = Environment.sky(sun_direction=(1.0, 0.6, 0.3), sun_radiance=(60, 40, 20), sun_angle=20)

@@ -7,7 +7,7 @@ import trimesh
 
 import aolab
 from aolab import Camera, Environment
-from aolab.environment import averaged
+from aolab.scene.environment import averaged
 
 SUN = Environment.sky(sun_direction=(1.0, 0.6, 0.3), sun_radiance=(60, 40, 20), sun_angle=20)
 

@@ -8,7 +8,7 @@ import pytest
 
 from aolab.papers import ssdo
 from aolab.papers.figure import Figure
-from aolab.papers.ssdo_cost import PAPER
+from aolab.papers.ssdo.cost import PAPER
 
 SIZE = (160, 90)
 

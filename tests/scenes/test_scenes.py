@@ -10,7 +10,7 @@ import trimesh
 
 import aolab
 from aolab.loading import scene_names
-from aolab.scene import Scene
+from aolab.scene.scene import Scene
 
 # triangles at the default parameters, as a user pays for them
 TRIANGLES = {
@@ -173,6 +173,6 @@ def test_toasters_are_never_below_the_floor_nor_in_one_another():
 
 
 def test_a_scene_asked_for_by_name_needs_no_trimesh():
-    """Scenes are made of `aolab.shapes`; `import trimesh` costs a third of a second, too long for a first picture."""
+    """Scenes are built from `aolab.scene.shapes`, without trimesh, whose import costs a third of a second."""
     code = "import sys, aolab; aolab.load('cornell'); sys.exit('trimesh' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

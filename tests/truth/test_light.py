@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import aolab
-from aolab.environment import direction_from_uv
+from aolab.scene.environment import direction_from_uv
 from aolab.truth import reference
 from aolab.truth.lighting import environment_radiance
 

@@ -9,10 +9,10 @@ import small_scenes
 
 import aolab
 from aolab.errors import Error, ParameterError, SceneError
+from aolab.scene.view import View
 from aolab.truth import reference
 from aolab.truth.mitsuba import path_traced, run_worker
 from aolab.truth.picture import over_environment
-from aolab.view import View
 
 from .rooms import quad, scene, wall_scene
 

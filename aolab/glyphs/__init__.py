@@ -1,1 +1,0 @@
-"""What a pixel knows of light: read off a frame (`reading`), drawn as lobes (`pictures`), by a click (`picker`)."""

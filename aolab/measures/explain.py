@@ -1,0 +1,165 @@
+"""Telling errors apart: what of a module's error is noise, filter, steps, layers, screen border, and method."""
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from PIL import Image
+
+from ..errors import ParameterError, suggestion
+from ..gl.texture import Size
+from ..loading import load
+from ..modules import MODULES, Module, find
+from ..pipeline.frame import Frame
+from ..pipeline.lab import Lab
+from ..scene.camera import Camera
+from ..scene.scene import Scene
+
+CONVERGED = 64  # frames: noise falls to 1/8 of one frame's
+BACKGROUND = 153  # grey, in none of the colours of an error
+STEPS = 32  # along a direction: as good as a ray, in an image of a few hundred rows
+LAYERS = 4  # of depth: what lies behind them is left to the method
+MARGIN = 0.5  # of the image's height, drawn around it to know what lies off the screen
+
+# each part is the difference of two neighbours in this chain of renders, from the module's frame to the truth
+PARTS = ("sampling noise", "filter", "few steps", "hidden layers", "off-screen geometry", "method")
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """A module's signed error and the parts that add up to it, pixel by pixel; all (H, W[, 3]), NaN in the background.
+
+    - `sampling noise`: the frame against the mean of many, both filtered;
+    - `filter`: that mean, filtered against unfiltered;
+    - `few steps`: unfiltered, against the same with directions marched as densely as a ray;
+    - `hidden layers`: that, with the camera's one layer of depth against four, peeled;
+    - `off-screen geometry`: that, against the same with a margin drawn around the image;
+    - `method`: what remains against rays.
+
+    A part that the module has no parameter for is 0, and joins the next one.
+
+    `share` of a part is its part of the squared error, Σ part · error / Σ error²: the shares add up to 1, and one that
+    is negative makes up for another.
+    """
+
+    frame: Frame
+    truth: Frame
+    buffer: str
+    error: np.ndarray
+    parts: dict[str, np.ndarray]
+
+    @property
+    def residual(self) -> float:
+        """The largest difference between the error and the sum of its parts: rounding, or something is wrong."""
+        return float(np.nanmax(np.abs(self.error - sum(self.parts.values()))))
+
+    def table(self) -> dict[str, dict[str, float]]:
+        """{part: rmse, bias, share}, and the whole."""
+        squared = np.nansum(self.error**2)
+
+        def row(values: np.ndarray) -> dict[str, float]:
+            share = np.nansum(values * self.error) / squared if squared else 0.0
+            return {
+                "rmse": float(np.sqrt(np.nanmean(values**2))),
+                "bias": float(np.nanmean(values)),
+                "share": float(share),
+            }
+
+        return {name: row(values) for name, values in {**self.parts, "error": self.error}.items()}
+
+    def picture(self) -> Image.Image:
+        """The result, the truth, the error and its parts, side by side; errors on one scale, zero in the middle."""
+        from matplotlib import colormaps
+
+        from ..pictures.sheet import contact_sheet, gray
+        from .pictures import SIGNED
+
+        limit = max(float(np.nanpercentile(np.abs(self.error), 99)), 1e-6)
+        table = self.table()
+        pictures = [
+            ("result", gray(_scalar(self.frame[self.buffer]))),
+            ("truth", gray(_scalar(self.truth[self.buffer]))),
+        ]
+        for name, values in {"error": self.error, **self.parts}.items():
+            caption = f"{name}: rmse {table[name]['rmse']:.4f}, {100 * table[name]['share']:.0f} % (±{limit:.2g})"
+            colors = colormaps[SIGNED](_scalar(values) / (2 * limit) + 0.5, bytes=True)[..., :3]
+            pictures.append((caption, np.where(_like(self.frame.mask, colors), colors, np.uint8(BACKGROUND))))
+        return contact_sheet(pictures)
+
+    def __str__(self) -> str:
+        rows = [f"{'part':<28}{'rmse':>9}{'bias':>10}{'share':>9}"]
+        rows += [
+            f"{name:<28}{row['rmse']:9.4f}{row['bias']:+10.4f}{100 * row['share']:8.1f}%"
+            for name, row in self.table().items()
+        ]
+        return "\n".join(rows)
+
+
+def explain(
+    scene: Any,
+    module: str | Module | type[Module] = "ssao",
+    *,
+    buffer: str = "visibility",
+    size: Size = (640, 360),
+    camera: Camera | None = None,
+    rays: int = 256,
+    seed: int = 0,
+    frames: int = CONVERGED,
+    **parameters: object,
+) -> Explanation:
+    """Split a module's error in `buffer` into parts, each by the pair of renders that differ in just that.
+
+    `frames` are averaged where the noise must be gone; `rays` a pixel make the truth, with the module's own radius and
+    falloff. Raises `ParameterError`, and what `aolab.render` and `aolab.reference` raise.
+    """
+    from ..truth import reference
+
+    if frames < 2:
+        raise ParameterError(f"frames = {frames} is not a whole number from 2 on")
+    scene, lab = load(scene), Lab(size)
+    module = find(module, MODULES, **parameters).resolved(scene)
+    camera = camera or scene.camera
+    assert camera is not None  # Scene frames itself
+    bare = module.replace(filter="none")
+    marched = bare.replace(steps=max(STEPS, bare.steps)) if "steps" in type(module).model_fields else bare  # type: ignore[attr-defined]
+    layered = marched.replace(occluders="layers", layers=LAYERS) if module.occluders == "depth" else marched
+    converged = {"seed": seed, "accumulate": frames, "camera": camera}
+
+    frame = lab.render(scene, module, camera=camera, seed=seed)
+    if buffer not in frame.buffers:
+        raise ParameterError(f"{frame.info['module']} gives no '{buffer}'{suggestion(buffer, frame.buffers)}")
+    truth = reference(scene, size=size, camera=camera, rays=rays, like=module, seed=seed, buffers=(buffer,))
+    chain = [
+        frame[buffer],
+        lab.render(scene, module, **converged)[buffer],
+        lab.render(scene, bare, **converged)[buffer],
+        lab.render(scene, marched, **converged)[buffer],
+        lab.render(scene, layered, **converged)[buffer],
+        _with_margin(lab, scene, layered, camera, size, seed, frames)[buffer],
+        truth[buffer],
+    ]
+    chain = [np.where(_like(frame.mask, values), values, np.nan).astype(np.float64) for values in chain]
+    parts = {name: first - second for name, (first, second) in zip(PARTS, pairwise(chain), strict=True)}
+    return Explanation(frame, truth, buffer, chain[0] - chain[-1], parts)
+
+
+def _with_margin(
+    lab: Lab, scene: Scene, module: Module, camera: Camera, size: Size, seed: int, frames: int
+) -> dict[str, np.ndarray]:
+    """The buffers of a larger image, cut to `size`: pixel for pixel the same view, but its border has neighbours."""
+    margin = 4 * round(MARGIN * size[1] / 4)  # whole periods of the interleaved pattern
+    larger = size[0] + 2 * margin, size[1] + 2 * margin
+    tan = np.tan(np.radians(camera.fov) / 2) * larger[1] / size[1]
+    wide = replace(camera, fov=float(2 * np.degrees(np.arctan(tan))))
+    frame = lab.render(scene, module, camera=wide, size=larger, seed=seed, accumulate=frames)
+    cut = slice(margin, margin + size[1]), slice(margin, margin + size[0])
+    return {name: frame[name][cut] for name in frame.buffers}
+
+
+def _like(mask: np.ndarray, values: np.ndarray) -> np.ndarray:
+    return mask if values.ndim == 2 else mask[..., None]
+
+
+def _scalar(values: np.ndarray) -> np.ndarray:
+    return values if values.ndim == 2 else values.mean(axis=-1)

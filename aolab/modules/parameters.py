@@ -1,0 +1,95 @@
+"""Parameters, stated once: validation, command line, uniforms, sliders and docs derive from the statement."""
+
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args, get_origin
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from ..errors import ParameterError, suggestion
+
+AUTO = "auto"
+
+
+def parameter(
+    default: Any,
+    description: str,
+    *,
+    ge: float | None = None,
+    gt: float | None = None,
+    le: float | None = None,
+    unit: str = "",
+) -> Any:
+    """A parameter of a module: default, one sentence, inclusive (`ge`, `le`) or exclusive (`gt`) range, unit."""
+    return Field(default, description=description, ge=ge, gt=gt, le=le, json_schema_extra={"unit": unit})
+
+
+class Parameters(BaseModel):
+    """Values with names, types, ranges and units. Raises `ParameterError` for an unknown name or a wrong value."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False)
+
+    if not TYPE_CHECKING:  # type checkers see the fields as arguments
+
+        def __init__(self, **values: object) -> None:
+            try:
+                super().__init__(**values)
+            except ValidationError as error:
+                raise ParameterError(_explain(type(self), error, values)) from None
+
+    def replace(self, **changes: object) -> Self:
+        """The same with some values changed, validated again."""
+        return type(self)(**{**self.model_dump(), **changes})
+
+
+def label(parameters: type[Parameters]) -> str:
+    """The name that users know the class by."""
+    return str(getattr(parameters, "name", "") or parameters.__name__)
+
+
+def _explain(parameters: type[Parameters], error: ValidationError, values: dict[str, object]) -> str:
+    messages = {}
+    for item in error.errors():
+        name = str(item["loc"][0]) if item["loc"] else ""
+        if item["type"] == "extra_forbidden":
+            known = parameters.model_fields
+            messages[name] = f"{label(parameters)} has no parameter '{name}'{suggestion(name, known)}"
+        elif name:
+            described = describe(parameters, name)
+            messages[name] = (
+                f"{label(parameters)}: {name} = {values.get(name)!r} is not valid: {described['type']}"
+                + (f", {described['range']}" if described["range"] else "")
+                + (f", in {described['unit']}" if described["unit"] else "")
+            )
+        else:
+            messages[name] = f"{label(parameters)}: {item['msg']}"
+    return "; ".join(messages.values())
+
+
+def describe(parameters: type[Parameters], name: str) -> dict[str, str]:
+    """One parameter as text: name, type, default, range, unit, description."""
+    schema = parameters.model_json_schema()
+    properties = schema["properties"][name]
+    branches = [properties, *properties.get("anyOf", [])]
+    bounds: dict[str, Any] = {}
+    for branch in branches:
+        bounds |= {key: branch[key] for key in _BOUNDS if key in branch}
+    return {
+        "name": name,
+        "type": _type_name(parameters.model_fields[name].annotation),
+        "default": str(parameters.model_fields[name].default),
+        "range": ", ".join(f"{_BOUNDS[key]} {bounds[key]:g}" for key in _BOUNDS if key in bounds),
+        "unit": properties.get("unit", ""),
+        "description": properties.get("description", ""),
+    }
+
+
+_BOUNDS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
+
+
+def _type_name(annotation: Any) -> str:
+    if get_origin(annotation) is Literal:
+        return " or ".join(str(value) for value in get_args(annotation))
+    if args := [a for a in get_args(annotation) if a is not type(None)]:
+        if hasattr(annotation, "__metadata__"):
+            return _type_name(args[0])
+        return " or ".join(_type_name(a) for a in args)
+    return getattr(annotation, "__name__", str(annotation))

@@ -1,0 +1,120 @@
+"""`aolab.glyph`: a pixel's glyph, read off a frame and off the light of its scene."""
+
+import operator
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from ..errors import ParameterError
+from ..gl.texture import Size
+from ..maths.harmonics import hanning, light_lobe, rotate, zonal_lobe
+from ..modules import MODULES, S3HO
+from ..pipeline.frame import Frame
+from ..scene.camera import Camera
+from ..scene.lights import DirectionalLight
+from ..scene.scene import Scene
+from ..scene.view import View
+from ..truth.lighting import towards_light
+from ..truth.points import pixel_rays
+from .glyph import Glyph
+
+HARMONICS = [f"sh{i}" for i in range(4)]
+BOUNCE = [f"bounce{i}" for i in range(7)]
+
+
+def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
+    """Occlusion and light at `pixel` (column, row) of a frame's image, counted from its top left.
+
+    For frames with spherical harmonics: `aolab.render(scene, "s3ho")`, also relit, and
+    `aolab.reference(scene, buffers=("sh0", "sh1", "sh2", "sh3"))`. Raises `ParameterError` for another frame, and for a
+    pixel that is outside or shows the background.
+    """
+    scene = lit_scene(frame)
+    column, row = _inside(pixel, frame.size)
+    here = Frame(_Texels(frame, column, row), {}, frame.info, derived=frame.derived)
+    if not here.mask[0, 0]:
+        raise ParameterError(f"glyph: pixel ({column}, {row}) shows the background, no surface; frame.mask tells where")
+    position = _position(frame.camera, frame.size, (column, row), float(here["viewZ"][0, 0]))
+    return Glyph(
+        pixel=(column, row),
+        position=position,
+        normal=here.world_normal()[0, 0],
+        coefficients=np.concatenate([here[name][0, 0] for name in HARMONICS]).astype(np.float64),
+        light=_light(scene, position, frame.info["parameters"].get("light_window", S3HO().light_window)),
+        bounce=_bounce(here) if set(BOUNCE) <= set(frame.buffers) else None,
+        camera=frame.camera,
+    )
+
+
+class _Texels(Mapping[str, np.ndarray]):
+    """One pixel of each texture: a frame of these derives its buffers, `sh0` to `sh3`, for that pixel alone."""
+
+    def __init__(self, frame: Frame, column: int, row: int) -> None:
+        self._frame, self._pixel = frame, (slice(row, row + 1), slice(column, column + 1))
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._frame[name][self._pixel]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._frame.textures)
+
+    def __len__(self) -> int:
+        return len(self._frame.textures)
+
+
+def lit_scene(frame: Frame) -> Scene:
+    """The scene of a frame that has all that glyphs take. Raises `ParameterError` for another."""
+    if missing := [name for name in HARMONICS if name not in frame.buffers]:
+        modules = ", ".join(name for name, module in MODULES.items() if "sh0" in module.derived)
+        raise ParameterError(
+            f"glyph: this frame, of {frame.info.get('module')}, has no {', '.join(missing)}; those come from the "
+            f"modules {modules}, and from aolab.reference(scene, buffers={tuple(HARMONICS)})"
+        )
+    if frame.scene is None:
+        raise ParameterError("glyph: this frame does not know its scene, and so not its light; render it with a lab")
+    return frame.scene
+
+
+def _inside(pixel: tuple[int, int], size: Size) -> tuple[int, int]:
+    """(column, row) as whole numbers of Python's, NumPy's accepted."""
+    width, height = size
+    try:
+        column, row = map(operator.index, pixel)
+        inside = 0 <= column < width and 0 <= row < height
+    except (TypeError, ValueError):
+        column, row, inside = 0, 0, False
+    if not inside:
+        raise ParameterError(
+            f"glyph: pixel = {pixel!r} is not a (column, row) of this image, {width}x{height}: "
+            f"columns are 0 to {width - 1}, rows 0 to {height - 1}, from the top left"
+        )
+    return column, row
+
+
+def _position(camera: Camera, size: Size, pixel: tuple[int, int], view_z: float) -> np.ndarray:
+    """(3,) world space: `view_z` along the ray through the centre of `pixel` (column, row)."""
+    view = View(camera, size, np.zeros((2, 3)))  # bounds make clip planes, and there are none here
+    ray = pixel_rays(view, np.array([pixel[1] * size[0] + pixel[0]]))[0]
+    world_from_view = np.linalg.inv(camera.view_from_world)
+    return world_from_view[:3, :3] @ (ray * -view_z) + world_from_view[:3, 3]
+
+
+def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:
+    """(16, 3): c_Lin at world-space `position` (3,), Eq. 4, as in glsl/s3ho.direct.frag and s3ho.ambient.frag."""
+    assert scene.environment is not None  # Scene fills it in
+    total = scene.environment.radiance_sh.copy()
+    lobe = light_lobe(hanning(window))
+    for light in scene.lights:
+        # relative to `position`, which is then the origin: float32 is finest there
+        towards, _, share = towards_light(light, np.zeros((1, 3), np.float32), position)
+        color = light.irradiance if isinstance(light, DirectionalLight) else light.intensity
+        total += np.outer(zonal_lobe(lobe, towards[0]), float(share[0]) * np.asarray(color))
+    return total
+
+
+def _bounce(here: Frame) -> np.ndarray:
+    """(16, 3): c_SSGI, world space, from the textures as glsl/s3ho.senders.frag lays them out: nine, then zeros."""
+    texels = np.concatenate([here[name][0] for name in BOUNCE])  # (7, 4)
+    seen = np.zeros((16, 3))
+    seen[:7], seen[7], seen[8] = texels[:, :3], texels[:3, 3], texels[3:6, 3]
+    return rotate(seen.T, here.camera.view_from_world[:3, :3].T).T

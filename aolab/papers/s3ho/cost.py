@@ -1,0 +1,96 @@
+"""S3HO's table of costs."""
+
+import statistics
+from functools import partial
+from typing import Any
+
+from ...gl import context
+from ...gl.texture import Size
+from ...loading import load
+from ...modules import S3HO, SSAO, SSBN, SSDO, Module
+from ...pictures.sheet import table
+from ...pipeline.api import shared_lab
+from ...studies.machine import describe
+from ..figure import Figure
+from ..timing import REPEATS, Cost, in_turns, median_ratio
+
+RADIUS = 0.6  # metres: reaches across the mouldings and the folds of the curtains
+
+# directions of two steps: milliseconds with SSAO, S3HO, SSDO and SSBN (Table 1); the bounce is told in section 4
+METHODS, BOUNCE = ("SSAO", "S3HO", "SSDO", "SSBN"), "S3HO + bounce"
+PAPER = {8: (6.9, 7.4, 10.1, 6.9), 16: (13.3, 14.1, 20.3, 13.6), 32: (26.3, 27.8, 40.7, 27.0)}
+PAPER_BOUNCE = 59.0  # at 32 directions
+
+
+def table1(size: Size = (1280, 720), repeats: int = REPEATS) -> Figure:
+    """The estimates' passes, as in the paper, and whole frames; the atrium, two steps a direction.
+
+    Ratios to SSAO are medians over turns, each of one frame of every row. "+ bounce" is S3HOGI, the senders' pass
+    included. `in_order`: whether SSBN costs less than S3HO, and that less than SSDO, for each number of directions.
+
+    The order is the paper's, where nothing else keeps the machine busy; that S3HO costs next to nothing over SSAO is
+    not so on a CPU (llvmpipe), where this does not hold. The paper's GPU waited for texture reads, and sums of 16
+    coefficients could fill the time; here they are work of their own. At N = 8 there is more to it: the driver unrolls
+    SSAO's loop of 8 directions, and not S3HO's.
+    """
+    scene = load("atrium")
+    modules = {directions: _modules(directions) for directions in PAPER}
+    draw = partial(shared_lab().render, scene, size=size)
+    draws = {(n, name): partial(draw, module) for n, some in modules.items() for name, module in some.items()}
+    costs = in_turns(draws, repeats)
+    rows = [
+        {"directions": n, "method": name, **_cost(costs[n, name], costs[n, "SSAO"], module.name), **_printed(n, name)}
+        for n, some in modules.items()
+        for name, module in some.items()
+    ]
+    ratios = {n: {row["method"]: row["ratio"] for row in rows if row["directions"] == n} for n in PAPER}
+    in_order = {n: ratio["SSBN"] < ratio["S3HO"] < ratio["SSDO"] for n, ratio in ratios.items()}
+    numbers = {
+        "rows": rows,
+        "in_order": in_order,
+        "size": list(size),
+        "triangles": scene.triangles,
+        "turns": repeats,
+        "renderer": context.renderer(),
+        "machine": describe(),
+    }
+    claim = "SSBN costs less than S3HO, and S3HO less than SSDO, and at most 1.07 times as much as SSAO"
+    title = f"S3HO, Table 1, {size[0]} x {size[1]}, {repeats} turns, {context.renderer()}, {describe()}."
+    holds = all(in_order.values()) and all(ratio["S3HO"] <= 1.07 for ratio in ratios.values())
+    return Figure(table(_cells(rows), title=title), numbers, claim, holds)
+
+
+def _modules(directions: int) -> dict[str, Module]:
+    common = {"radius": RADIUS, "directions": directions, "steps": 2}
+    modules: dict[str, Module] = {
+        name: kind(**common) for name, kind in zip(METHODS, (SSAO, S3HO, SSDO, SSBN), strict=True)
+    }
+    return {**modules, BOUNCE: S3HO(**common, indirect=True)}
+
+
+def _printed(directions: int, name: str) -> dict[str, float | None]:
+    printed = dict(zip(METHODS, PAPER[directions], strict=True))
+    if directions == max(PAPER):
+        printed[BOUNCE] = PAPER_BOUNCE
+    paper = printed.get(name)
+    return {"paper": paper, "paper_ratio": paper and paper / printed["SSAO"]}
+
+
+def _cost(costs: list[Cost], ssao: list[Cost], stem: str) -> dict[str, float]:
+    """Milliseconds of the estimate's passes and of frames, and their ratios to SSAO's."""
+    passes, frames = [cost.of(stem) for cost in costs], [cost.frame for cost in costs]
+    return {
+        "pass": statistics.median(passes),
+        "ratio": median_ratio(passes, [cost.of("ssao") for cost in ssao]),
+        "frame": statistics.median(frames),
+        "frame_ratio": median_ratio(frames, [cost.frame for cost in ssao]),
+    }
+
+
+def _cells(rows: list[dict[str, Any]]) -> list[list[str]]:
+    cells = [["N", "method", "pass ms", "/ SSAO", "paper ms", "/ SSAO", "frame ms", "/ SSAO"]]
+    for row in rows:
+        printed = ("", "") if row["paper"] is None else (f"{row['paper']:.1f}", f"{row['paper_ratio']:.2f}")
+        own, frame = (f"{row['pass']:.1f}", f"{row['ratio']:.2f}"), (f"{row['frame']:.0f}", f"{row['frame_ratio']:.2f}")
+        cells.append([str(row["directions"]), row["method"], *own, *printed, *frame])
+    return cells

@@ -1,0 +1,1 @@
+"""The way of one frame: surfaces, shadows, estimate, filters, lighting, composition."""

@@ -1,0 +1,141 @@
+"""What a render gives back: every buffer by name, read when asked for, and the image."""
+
+import weakref
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from io import BytesIO
+from os import PathLike
+from typing import Any, Self, TypeVar
+
+import moderngl
+import numpy as np
+from PIL import Image
+
+from ..errors import ParameterError, suggestion
+from ..gl.texture import Pool, read
+from ..pictures.metadata import save_png
+from ..scene.camera import Camera
+from ..scene.scene import Scene
+
+# how many channels of a texture mean something; the others are padding
+_RGB = ("viewNormal", "albedo", "direct", "ambient", "indirect", "irradiance", "bounce", "radiance", "image")
+# scalars that have no value where nothing was drawn
+_NAN_IN_BACKGROUND = ("visibility",)
+Holder = TypeVar("Holder")
+
+
+@dataclass(eq=False)
+class Frame:
+    """One rendered frame.
+
+    `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
+    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` says how it
+    was made: renderer, module, parameters, camera, size, seed, ...; `notes` what was repaired or left out. A frame
+    keeps its textures until it is dropped, so frames may be held and compared; each costs 50 to 200 bytes a pixel.
+    """
+
+    textures: Mapping[str, moderngl.Texture | np.ndarray]
+    timings: dict[str, float]
+    info: dict[str, Any]
+    frame_ms: float = 0.0
+    notes: list[str] = field(default_factory=list)
+    # read off other buffers: each a function of the frame and of "" or "_raw"
+    derived: Mapping[str, tuple[Callable[[Self, str], np.ndarray], str]] = field(default_factory=dict)
+    scene: Scene | None = field(default=None, repr=False)  # what is shown, as it was lit
+    kept: Any = field(default=None, repr=False)  # what its lab needs to light it again
+    _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
+
+    @property
+    def buffers(self) -> list[str]:
+        """The names that `frame[name]` knows."""
+        return sorted({*self.textures, *self.derived})
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """(width, height) in pixels."""
+        return tuple(self.info["size"])  # type: ignore[return-value]
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self.buffers:
+            raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.buffers)}")
+        if name not in self._arrays:
+            if name in self.derived:
+                make, raw = self.derived[name]
+                pixels = make(self, raw)
+            else:
+                pixels = self.channels(name)
+            if name.removesuffix("_raw") in _RGB:
+                pixels = np.ascontiguousarray(pixels[..., :3])
+            if name.removesuffix("_raw") in _NAN_IN_BACKGROUND and pixels.shape == self["viewZ"].shape:
+                pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
+            self._arrays[name] = pixels
+        return self._arrays[name]
+
+    def channels(self, name: str) -> np.ndarray:
+        """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
+        source = self.textures[name]
+        return source if isinstance(source, np.ndarray) else read(source)
+
+    def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
+        """What `make` gives, made when first asked for under this name: what several derived buffers share."""
+        if name not in self._arrays:
+            self._arrays[name] = make()
+        return self._arrays[name]
+
+    @property
+    def camera(self) -> Camera:
+        """The camera that it was taken with."""
+        return Camera(**self.info["camera"])
+
+    def world_normal(self, like: str = "viewNormal") -> np.ndarray:
+        """(H, W, 3): the unit normals in world space, 0 in the background; at the size of the buffer `like`.
+
+        That may be smaller where a raw estimate was made at a lower `scale`: then those of the nearest pixels.
+        """
+        normal = self["viewNormal"]
+        sizes = zip(normal.shape[:2], self[like].shape[:2], strict=True)
+        rows, columns = ((np.arange(few) + 0.5) * (many / few) for many, few in sizes)
+        nearest = normal[rows.astype(int)[:, None], columns.astype(int)]
+        return nearest @ self.camera.view_from_world[:3, :3].astype(np.float32)
+
+    @property
+    def image(self) -> np.ndarray:
+        """(H, W, 3) uint8, sRGB, top row first."""
+        return self["image"]
+
+    @property
+    def mask(self) -> np.ndarray:
+        """(H, W) bool: where a surface was drawn."""
+        return np.isfinite(self["viewZ"])
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the image as PNG, with everything needed to make it again in its metadata; replaces atomically."""
+        save_png(path, self.image, self.info)
+
+    def save_buffers(self, path: str | PathLike[str]) -> None:
+        """Write every buffer by name as a compressed .npz; replaces atomically. Background is NaN in visibility."""
+        from ..output import replacing
+
+        with replacing(path) as file:
+            np.savez_compressed(file, **{name: self[name] for name in self.buffers})  # type: ignore[arg-type]
+
+    def stats(self) -> dict[str, Any]:
+        """How it was made and what it cost, for `--stats`; times in milliseconds."""
+        keys = ("renderer", "size", "module", "parameters", "triangles", "seed")
+        known = {key: self.info[key] for key in keys if key in self.info}
+        return {**known, "timings": self.timings, "frame_ms": self.frame_ms, "notes": self.notes}
+
+    def _repr_png_(self) -> bytes:
+        data = BytesIO()
+        Image.fromarray(self.image).save(data, "PNG")
+        return data.getvalue()
+
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<Frame {width}x{height} {self.info['module']}: {', '.join(self.buffers)}>"
+
+
+def lend(holder: Holder, pool: Pool, lent: list[Any]) -> Holder:
+    """Give the textures `lent` back to the pool when nobody keeps their holder."""
+    weakref.finalize(holder, pool.give_back, lent)
+    return holder

@@ -1,0 +1,1 @@
+"""The contents of a scene: meshes, camera, lights, environment."""

@@ -1,0 +1,95 @@
+"""The camera: a pinhole, right-handed, y up; view space looks down -z."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import SceneError
+
+Vec3 = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A perspective camera in world space.
+
+    `eye`, `target` and `up` are world-space points and a direction (scene units); `fov` is the vertical field of
+    view in degrees, in (0, 180). `near` and `far` are clip distances in scene units; None takes them from the scene.
+    Raises `SceneError` for a camera that looks nowhere or holds non-finite numbers.
+    """
+
+    eye: Vec3
+    target: Vec3
+    up: Vec3 = (0.0, 1.0, 0.0)
+    fov: float = 45.0
+    near: float | None = None
+    far: float | None = None
+
+    def __post_init__(self) -> None:
+        for name in ("eye", "target", "up"):
+            value = np.asarray(getattr(self, name), float)
+            if value.shape != (3,) or not np.isfinite(value).all():
+                raise SceneError(f"camera: {name} = {getattr(self, name)} is not three finite numbers")
+            object.__setattr__(self, name, tuple(value.tolist()))
+        if not 0 < self.fov < 180:
+            raise SceneError(f"camera: fov = {self.fov} is outside (0, 180) degrees")
+        forward = np.subtract(self.target, self.eye)
+        if not np.linalg.norm(forward) > 0:
+            raise SceneError(f"camera: eye and target are both {self.eye}; it looks nowhere")
+        if np.linalg.norm(np.cross(forward, self.up)) <= 1e-9 * np.linalg.norm(forward) * np.linalg.norm(self.up):
+            raise SceneError(f"camera: up = {self.up} is parallel to the view direction; choose another up")
+        if self.near is not None and not 0 < self.near < np.inf:
+            raise SceneError(f"camera: near = {self.near} must be finite and above 0")
+        if self.far is not None and not (self.near or 0) < self.far < np.inf:
+            raise SceneError(f"camera: far = {self.far} must be finite and above near = {self.near or 0}")
+
+    @property
+    def view_from_world(self) -> np.ndarray:
+        """(4, 4) float64, a rigid transform."""
+        eye = np.asarray(self.eye)
+        backward = eye - self.target
+        backward /= np.linalg.norm(backward)
+        right = np.cross(self.up, backward)
+        right /= np.linalg.norm(right)
+        rotation = np.stack([right, np.cross(backward, right), backward])
+        matrix = np.eye(4)
+        matrix[:3, :3] = rotation
+        matrix[:3, 3] = -rotation @ eye
+        return matrix
+
+    def tan_half_fov(self, size: tuple[int, int]) -> tuple[float, float]:
+        """Tangents of half the horizontal and vertical field of view for an image of (width, height) pixels."""
+        vertical = float(np.tan(np.radians(self.fov) / 2))
+        return vertical * size[0] / size[1], vertical
+
+    def clip_planes(self, bounds: np.ndarray) -> tuple[float, float]:
+        """Near and far distances that hold `bounds` (2, 3), where the camera does not give its own."""
+        corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
+        distances = -(corners @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
+        far = self.far or max(float(distances.max()) * 1.01, 1e-6)
+        near = self.near or max(
+            float(distances.min()) * 0.99, far * 1e-3
+        )  # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m
+        return near, max(far, near * 1.001)
+
+    def clip_from_view(self, size: tuple[int, int], bounds: np.ndarray) -> np.ndarray:
+        """(4, 4) float64, OpenGL clip space."""
+        near, far = self.clip_planes(bounds)
+        tan_x, tan_y = self.tan_half_fov(size)
+        matrix = np.zeros((4, 4))
+        matrix[0, 0], matrix[1, 1] = 1 / tan_x, 1 / tan_y
+        matrix[2, 2], matrix[2, 3] = -(far + near) / (far - near), -2 * far * near / (far - near)
+        matrix[3, 2] = -1
+        return matrix
+
+    @classmethod
+    def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":
+        """A camera that sees all of `bounds` (2, 3), from `direction` as seen from their centre, in a square image."""
+        centre = bounds.mean(axis=0)
+        towards = np.asarray(direction) / np.linalg.norm(direction)
+        probe = cls(eye=tuple(centre + towards), target=tuple(centre), fov=fov)
+        corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T - centre
+        x, y, z = probe.view_from_world[:3, :3] @ corners.T
+        # each corner asks for a distance at which it falls inside the frame, 5 % away from its edge
+        distance = float((z + np.maximum(np.abs(x), np.abs(y)) * 1.05 / np.tan(np.radians(fov) / 2)).max())
+        return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov)

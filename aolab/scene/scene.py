@@ -1,0 +1,152 @@
+"""A scene: meshes placed in the world, lights, an environment, a camera. Immutable, so that GPU copies can be kept."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+
+from ..errors import SceneError
+from ..maths.local_maxima import AXES, mean_nearest_distance
+from .camera import Camera
+from .environment import Environment
+from .lights import DirectionalLight, Light
+from .mesh import Mesh
+
+MAX_EXTENT = 1e15  # scene units; its square still fits float32, which the shaders compute with
+
+
+@dataclass(frozen=True, eq=False)
+class Instance:
+    """A mesh placed by `world_from_local` (4, 4), an affine transform. Raises `SceneError` for a singular one."""
+
+    mesh: Mesh
+    world_from_local: np.ndarray = field(default_factory=lambda: np.eye(4))
+    name: str = ""
+
+    def __post_init__(self) -> None:
+        matrix = np.array(self.world_from_local, np.float64)
+        what = f"instance '{self.name or self.mesh.name}'"
+        if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
+            raise SceneError(f"{what}: its transform is not a finite 4×4 matrix:\n{matrix}")
+        if not np.allclose(matrix[3], (0, 0, 0, 1)):
+            raise SceneError(f"{what}: its transform's last row is {matrix[3].tolist()}, not affine")
+        singular = np.linalg.svd(matrix[:3, :3], compute_uv=False)
+        if not singular[2] > 1e-9 * singular[0]:
+            raise SceneError(f"{what}: its transform is singular (scales {singular.tolist()}); nothing would be left")
+        matrix.flags.writeable = False
+        object.__setattr__(self, "world_from_local", matrix)
+
+
+def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
+    """The light of a scene that brings none: a hazy blue sky, and a warm sun from the upper left.
+
+    White in full light has radiance about 1.2: under the filmic curve it is bright and not burnt out.
+    """
+    sky = Environment.sky(zenith=(0.16, 0.28, 0.50), horizon=(0.46, 0.50, 0.56), ground=(0.20, 0.18, 0.15))
+    return sky, (DirectionalLight(direction=(0.7, -1.0, -0.45), irradiance=(3.4, 3.1, 2.6)),)
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """What is drawn. A missing camera frames the scene; without lights and environment there is a default sky and sun.
+
+    `source` is what `aolab.load` was given, where that was a name or a file; it makes an image reproducible.
+    """
+
+    instances: tuple[Instance, ...]
+    lights: tuple[Light, ...] = ()
+    environment: Environment | None = None
+    camera: Camera | None = None
+    name: str = "scene"
+    source: str | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "instances", tuple(self.instances))
+        object.__setattr__(self, "lights", self._checked_lights())
+        if self.environment is not None and not isinstance(self.environment, Environment):
+            raise SceneError(
+                f"scene '{self.name}': environment = {self.environment!r:.80} is not an Environment; "
+                "make one with Environment.constant, .sky, .load or .light_probe"
+            )
+        if not self.instances:
+            raise SceneError(f"scene '{self.name}' is empty: it holds no mesh")
+        if self.environment is None and not self.lights:
+            environment, lights = sun_and_sky()
+            object.__setattr__(self, "environment", environment)
+            object.__setattr__(self, "lights", lights)
+        elif self.environment is None:
+            object.__setattr__(self, "environment", Environment.constant((0.0, 0.0, 0.0)))
+        extent = float(np.abs(self.bounds).max())
+        if not extent < MAX_EXTENT:
+            raise SceneError(
+                f"scene '{self.name}' reaches {extent:.3g} units from the origin; the limit is {MAX_EXTENT:g}"
+            )
+        if not self.radius > 1e-12 or not self.radius > 1e-6 * extent:
+            raise SceneError(
+                f"scene '{self.name}' has radius {self.radius:.3g} at {extent:.3g} from the origin: too small for "
+                "float32; scale it or move it to the origin"
+            )
+        if self.camera is None:
+            object.__setattr__(self, "camera", Camera.framing(self.bounds))
+
+    def _checked_lights(self) -> tuple[Light, ...]:
+        lights = tuple(self.lights) if isinstance(self.lights, Iterable) else None
+        if lights is None or not all(isinstance(light, Light) for light in lights):
+            raise SceneError(
+                f"scene '{self.name}': lights = {self.lights!r:.80} is not a sequence of lights: "
+                "DirectionalLight, PointLight, SpotLight"
+            )
+        return lights
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) float64: the least and greatest world coordinates."""
+        lows, highs = [], []
+        for instance in self.instances:
+            matrix = instance.world_from_local
+            world = instance.mesh.vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
+            lows.append(world.min(axis=0))
+            highs.append(world.max(axis=0))
+        return np.array([np.min(lows, axis=0), np.max(highs, axis=0)])
+
+    @property
+    def radius(self) -> float:
+        """Half the diagonal of the bounds, in scene units."""
+        return float(np.linalg.norm(self.bounds[1] - self.bounds[0])) / 2
+
+    @property
+    def triangles(self) -> int:
+        """How many triangles are drawn, instances counted."""
+        return sum(len(instance.mesh.faces) for instance in self.instances)
+
+    @cached_property
+    def feature_distance(self) -> float | None:
+        """The mean distance between neighbouring local maxima (`maths.local_maxima`); None if there is only one."""
+        points, axes = [], []
+        for instance in self.instances:
+            local, axis = instance.mesh.local_maxima
+            points.append(local @ instance.world_from_local[:3, :3].T + instance.world_from_local[:3, 3])
+            axes.append(axis)
+        world, along = np.concatenate(points), np.concatenate(axes)
+        distances = [mean_nearest_distance(world[along == axis]) for axis in range(len(AXES))]
+        known = [distance for distance in distances if distance is not None]
+        return float(np.mean(known)) if known else None
+
+    def world_triangles(self) -> np.ndarray:
+        """(triangles, 3, 3) float64: every triangle's corners in world space, in the order of the instances."""
+        parts = []
+        for instance in self.instances:
+            matrix = instance.world_from_local
+            corners = instance.mesh.vertices.astype(np.float64)[instance.mesh.faces]
+            parts.append(corners @ matrix[:3, :3].T + matrix[:3, 3])
+        return np.concatenate(parts)
+
+    def replace(self, **changes: object) -> "Scene":
+        """The same scene with other lights, environment, camera, ...; meshes stay where they are on the GPU.
+
+        With other content it is not what `source` names any more, and has none, unless a new one is given.
+        """
+        if {"instances", "lights", "environment"} & set(changes):
+            changes = {"source": None, **changes}
+        return replace(self, **changes)  # type: ignore[arg-type]

@@ -1,0 +1,56 @@
+"""More cameras than a scene has: its own, and others that look at the same point from the side."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+
+from ..errors import Notice, ParameterError
+from ..gl.texture import Size
+from ..pipeline.lab import Lab
+from ..scene.camera import Camera
+from ..scene.scene import Scene
+
+STEP = 15.0  # degrees: enough for other surfaces to hide and to be seen, with the same objects still in the picture
+CLEARANCE = 0.5  # of the distance to what the scene's own camera has nearest: no pillar or curtain before the lens
+LEAST = 2.0  # degrees; less is no other view
+
+
+def turned(camera: Camera, degrees: float) -> Camera:
+    """The camera, its eye moved by `degrees` around the axis `up` through its target, counterclockwise from above."""
+    up = np.asarray(camera.up) / np.linalg.norm(camera.up)
+    arm, angle = np.subtract(camera.eye, camera.target), np.radians(degrees)
+    # Rodrigues' rotation
+    arm = arm * np.cos(angle) + np.cross(up, arm) * np.sin(angle) + up * (up @ arm) * (1 - np.cos(angle))
+    return replace(camera, eye=tuple(np.add(camera.target, arm).tolist()))
+
+
+def cameras(scene: Scene, count: int, lab: Lab, size: Size) -> dict[float, Camera]:
+    """{degrees: camera}: the scene's own, at 0, and turned by 15, -15, 30, -30, ... degrees, `count` in all.
+
+    An angle is halved until nothing stands nearer to the eye than half of what the scene's own camera has nearest, and
+    something is seen; below 2 degrees, or where the angle is taken, the camera is left out, with a `Notice`.
+    """
+    if not isinstance(count, int) or count < 1:
+        raise ParameterError(f"views = {count!r} is not a whole number from 1 on")
+    own = scene.camera
+    assert own is not None  # Scene frames itself
+    nearest = _nearest(scene, own, lab, size)
+    found = {0.0: own}
+    for index in range(1, count):
+        wanted = degrees = STEP * ((index + 1) // 2) * (1 if index % 2 else -1)
+        while (
+            abs(degrees) >= LEAST
+            and not CLEARANCE * nearest <= _nearest(scene, turned(own, degrees), lab, size) < np.inf
+        ):
+            degrees /= 2
+        if abs(degrees) >= LEAST and degrees not in found:
+            found[degrees] = turned(own, degrees)
+        else:
+            warnings.warn(f"{scene.name}: no free view near {wanted:g} degrees; it is left out", Notice, stacklevel=3)
+    return found
+
+
+def _nearest(scene: Scene, camera: Camera, lab: Lab, size: Size) -> float:
+    """Distance along the view axis to the nearest surface in the picture; infinite where there is none."""
+    return float(-lab.render(scene, "none", camera=camera, size=size)["viewZ"].max())

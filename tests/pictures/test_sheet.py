@@ -1,0 +1,44 @@
+"""Contact sheets and tables: everything is on them, and nothing of it is painted over."""
+
+import numpy as np
+from PIL import Image
+
+from aolab.pictures.sheet import CAPTION, LINE, MARGIN, contact_sheet, gray, table
+
+RED = np.full((20, 300, 3), (255, 0, 0), np.uint8)
+
+
+def count(picture: Image.Image, color: tuple[int, int, int]) -> int:
+    return int((np.asarray(picture) == color).all(axis=-1).sum())
+
+
+def ink(picture: Image.Image, rows: slice) -> int:
+    return int((np.asarray(picture)[rows] < 128).all(axis=-1).sum())
+
+
+def test_pictures_stand_in_rows_with_their_captions():
+    sheet = contact_sheet([("one", RED), ("two", RED), ("three", RED)], 2)
+    assert sheet.size == (2 * (300 + MARGIN) + MARGIN, 2 * (20 + CAPTION + MARGIN) + MARGIN)
+    assert count(sheet, (255, 0, 0)) == 3 * RED[..., 0].size
+    assert ink(sheet, slice(0, MARGIN + 20)) == 0
+    assert ink(sheet, slice(MARGIN + 20, MARGIN + 20 + CAPTION)) > 50
+
+
+def test_a_title_is_wrapped_above_them():
+    plain, long = contact_sheet([("", RED)], 1), contact_sheet([("", RED)], 1, title="seven words " * 20)
+    assert (long.height - plain.height) % LINE == 0
+    assert long.height - plain.height >= 4 * LINE
+    assert count(long, (255, 0, 0)) == RED[..., 0].size
+    assert not (np.asarray(long)[:, -4:] < 128).any()  # no word runs out of the sheet
+
+
+def test_a_table_has_its_rows_and_columns():
+    drawn = table([["size", "N"], ["640", "8"], ["1600", "16"]], title="a title that is longer than the table")
+    wider = table([["size", "N"], ["640", "8"], ["1600", "16 and more than that"]])
+    assert wider.width > drawn.width
+    one_less = table([["size", "N"], ["640", "8"]])
+    assert wider.height - one_less.height == LINE
+
+
+def test_gray_is_white_where_nothing_was_drawn():
+    assert gray(np.array([[0.0, 0.5, 1.0, 2.0, np.nan]]))[0, :, 0].tolist() == [0, 128, 255, 255, 255]

@@ -1,0 +1,132 @@
+"""What a mesh refuses, repairs and makes."""
+
+import numpy as np
+import pytest
+
+from aolab.errors import Notice, SceneError
+from aolab.scene.mesh import Material, Mesh, Texture
+
+SQUARE = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], np.float32)
+TWO = np.array([[0, 1, 2], [0, 2, 3]])
+
+
+def test_arrays_are_float32_uint32_and_cannot_be_written():
+    mesh = Mesh(SQUARE.tolist(), TWO.tolist(), uv=SQUARE[:, :2], colors=np.ones((4, 4)))
+    for array, kind in [(mesh.vertices, np.float32), (mesh.normals, np.float32), (mesh.faces, np.uint32)]:
+        assert array.dtype == kind
+        assert array.flags.c_contiguous
+    for array in (mesh.vertices, mesh.normals, mesh.faces, mesh.uv, mesh.colors):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 0
+
+
+def test_the_callers_arrays_stay_writeable():
+    vertices, normals = SQUARE.copy(), np.tile(np.float32([0, 0, 1]), (4, 1))
+    Mesh(vertices, TWO, normals=normals)
+    vertices[0] = normals[0] = 5
+
+
+def test_normals_are_made_and_attributes_follow_the_split():
+    vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    mesh = Mesh(vertices, faces, uv=vertices[:, :2], colors=np.c_[vertices, np.ones(4)])
+    assert len(mesh.vertices) == 12
+    np.testing.assert_array_equal(mesh.vertices[mesh.faces], vertices[faces])
+    np.testing.assert_array_equal(mesh.uv, mesh.vertices[:, :2])
+    np.testing.assert_array_equal(mesh.colors[:, :3], mesh.vertices)
+    np.testing.assert_allclose(mesh.normals[mesh.faces[0]], [[0, 0, -1]] * 3)
+
+
+def test_given_normals_are_kept_and_nothing_is_split():
+    normals = np.tile([0.6, 0, 0.8], (4, 1))
+    mesh = Mesh(SQUARE, TWO, normals=normals)
+    np.testing.assert_allclose(mesh.normals, normals, atol=1e-7)
+    assert len(mesh.vertices) == 4
+
+
+def test_a_normal_of_no_length_has_them_all_made():
+    normals = np.array([[0, 1, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0]], float)
+    np.testing.assert_allclose(Mesh(SQUARE, TWO, normals=normals).normals, [[0, 0, 1]] * 4)
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces"),
+    [(np.zeros((0, 3)), np.zeros((0, 3), int)), (SQUARE, np.zeros((0, 3), int)), (np.zeros((0, 3)), TWO)],
+)
+def test_empty(vertices, faces):
+    with pytest.raises(SceneError, match="mesh 'thing' is empty"):
+        Mesh(vertices, faces, name="thing")
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+@pytest.mark.parametrize("key", ["vertices", "normals", "uv", "colors"])
+def test_numbers_that_are_not_finite_are_named(key, value):
+    given = {"vertices": SQUARE, "normals": np.ones((4, 3)), "uv": np.zeros((4, 2)), "colors": np.ones((4, 4))}
+    given[key] = given[key].copy()
+    given[key][2, 1] = value
+    what = "vertex" if key == "vertices" else f"{key} of vertex"
+    with pytest.raises(SceneError, match=f"mesh 'thing': {what} 2 is .*{abs(value)}.*1 of 4 are not finite"):
+        Mesh(faces=TWO, name="thing", **given)
+
+
+def test_numbers_beyond_float32_are_not_finite():
+    with pytest.raises(SceneError, match="vertex 1 is"):
+        Mesh(SQUARE.astype(float) * 1e39, TWO)
+
+
+@pytest.mark.parametrize("index", [4, -1])
+def test_index_out_of_range(index):
+    with pytest.raises(SceneError, match=rf"triangle 1 has indices \[0, 2, {index}\], but there are 4 vertices"):
+        Mesh(SQUARE, [[0, 1, 2], [0, 2, index]])
+
+
+@pytest.mark.parametrize(
+    ("more", "match"),
+    [
+        ({"vertices": SQUARE[:, :2]}, r"vertices have shape \(4, 2\), not \(n, 3\)"),
+        ({"faces": np.array([[0, 1, 2, 3]])}, r"faces have shape \(1, 4\)"),
+        ({"uv": np.zeros((3, 2))}, "3 uv for 4 vertices"),
+        ({"colors": np.zeros((4, 3))}, r"colors have shape \(4, 3\), not \(n, 4\)"),
+        ({"normals": np.ones((5, 3))}, "5 normals for 4 vertices"),
+    ],
+)
+def test_shapes(more, match):
+    with pytest.raises(SceneError, match=match):
+        Mesh(**{"vertices": SQUARE, "faces": TWO, **more})
+
+
+def test_degenerate_triangles_are_dropped_and_counted():
+    faces = [[0, 1, 1], *TWO.tolist(), [3, 3, 3]]
+    with pytest.warns(Notice, match="mesh 'thing': dropped 2 of 4 triangles, degenerate"):
+        mesh = Mesh(SQUARE, faces, name="thing")
+    np.testing.assert_array_equal(mesh.vertices[mesh.faces], SQUARE[TWO])
+
+
+def test_a_mesh_of_degenerate_triangles_alone_is_empty():
+    with pytest.raises(SceneError, match="all of its 1 triangles are degenerate"):
+        Mesh(np.array([[0, 0, 0], [1, 1, 1], [2, 2, 2]]), [[0, 1, 2]])
+
+
+@pytest.mark.parametrize("scale", [1e-15, 1e15])
+def test_a_small_or_large_triangle_is_not_degenerate(scale):
+    assert len(Mesh(SQUARE * np.float32(scale), TWO).faces) == 2
+
+
+@pytest.mark.parametrize("color", [(1, 1), (1, 1, 1.01), (-0.1, 0, 0), (np.nan, 0, 0)])
+def test_material_colours(color):
+    with pytest.raises(SceneError, match="material 'paint': base_color"):
+        Material(base_color=color, name="paint")
+
+
+@pytest.mark.parametrize("pixels", [np.zeros((2, 2, 3), np.uint8), np.zeros((2, 2, 4)), np.zeros((0, 2, 4), np.uint8)])
+def test_texture_pixels(pixels):
+    with pytest.raises(SceneError, match="texture 'bark': pixels are"):
+        Texture(pixels, "bark")
+
+
+def test_a_texture_without_uv_is_left_out_and_said():
+    texture = Texture(np.full((2, 2, 4), 255, np.uint8), "checks")
+    with pytest.warns(Notice, match="a texture but no uv"):
+        mesh = Mesh(np.eye(3), [[0, 1, 2]], material=Material((0.2, 0.4, 0.6), texture))
+    assert mesh.material.texture is None
+    assert mesh.material.base_color == (0.2, 0.4, 0.6)

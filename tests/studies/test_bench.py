@@ -1,0 +1,68 @@
+"""The benchmark's shape: what it reports, never how fast."""
+
+import json
+import math
+from typing import Any
+
+import pytest
+
+from aolab.gl import context
+from aolab.modules import MODULES
+from aolab.studies import bench
+
+SIZE = 24, 16
+
+
+def is_summary(value: Any) -> bool:
+    return set(value) == {"median", "spread"} and all(math.isfinite(one) and one >= 0 for one in value.values())
+
+
+def test_a_summary_is_median_and_interquartile_range():
+    assert bench.summary([1, 2, 3, 4, 100]) == {"median": 3, "spread": 2}
+
+
+def test_frames(gl, monkeypatch):
+    monkeypatch.setattr(bench, "SMALL", SIZE)
+    result = bench.frames("boxes", SIZE, 3)
+    json.dumps(result)
+    assert (result["renderer"], result["scene"], result["size"]) == (context.renderer(), "boxes", [24, 16])
+    assert list(result["modules"]) == list(MODULES)
+    for name, measured in result["modules"].items():
+        assert {"g_buffer", name, "direct", "ambient", "compose"} <= set(measured["passes"])
+        assert all(is_summary(one) for one in measured["passes"].values())
+        assert is_summary(measured["frame"])
+    assert 0 < result["python_share"]["percent"]["median"] < 100
+    against = result["ssao_16x1_against"]
+    assert set(against["milliseconds"]) == {"ssao", "same_taps", "fixed_taps"}
+    assert set(against["ratio"]) == {"same_taps", "fixed_taps"}
+    assert all(one["median"] > 0 for one in against["ratio"].values())
+    text = bench.table(result)
+    assert f"renderer: {context.renderer()}" in text
+    assert "±" in text
+
+
+def test_scaling(gl):
+    result = bench.scaling((40, 20), 3)
+    json.dumps(result)
+    assert list(result["pixels"]["milliseconds"]) == [10 * 5, 13 * 6, 20 * 10, 40 * 20]
+    assert list(result["taps"]["milliseconds"]) == [16, 32, 64, 128]
+    triangles = list(result["triangles"]["milliseconds"])
+    assert triangles == sorted(triangles)
+    assert triangles[-1] > 4 * triangles[0]
+    for part in ("pixels", "taps", "triangles"):
+        assert set(result[part]["exponents"]) == {"g_buffer", "ssao", "filter visibility", "frame"}
+        assert all(math.isfinite(one) for one in result[part]["exponents"].values())
+    assert "exponents" in bench.table(result)
+
+
+def test_a_power_law_is_fitted_exactly():
+    costs = {x: {"linear": 0.5 * x, "flat": 3.0, "square": 1e-3 * x * x} for x in (10, 20, 50, 80)}
+    exponents = bench._fit(costs)["exponents"]
+    assert exponents == pytest.approx({"linear": 1, "flat": 0, "square": 2})
+
+
+@pytest.mark.slow
+def test_start_up(gl):
+    result = bench.start_up(2)
+    assert len(result["seconds"]) == 3
+    assert all(is_summary(one) for one in result["seconds"].values())
