@@ -102,7 +102,7 @@ def test_pictures_of_others_are_refused_by_name(tmp_path):
     with pytest.raises(FileError, match=r"cannot read .*a\.png as PNG"):
         read_png(path)
     Image.fromarray(PICTURE).save(path)
-    with pytest.raises(FileError, match=r"a\.png does not say how it was made: it was not saved by aolab"):
+    with pytest.raises(FileError, match=r"a\.png has no aolab metadata: it was not saved by aolab"):
         read_png(path)
     from PIL.PngImagePlugin import PngInfo
 

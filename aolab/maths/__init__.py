@@ -1,1 +1,1 @@
-"""Mathematics without scenes and without OpenGL."""
+"""Mathematics. Nothing here depends on a scene or on OpenGL."""

@@ -1,11 +1,12 @@
 """Real spherical harmonics, bands 0 to 3: the NumPy twin of `glsl/lib/sh.glsl` and its neighbours.
 
-The basis is the one listed by Sloan 2008, "Stupid Spherical Harmonics (SH) Tricks", appendix A2: orthonormal over the
-sphere, with the Condon-Shortley sign, so that odd m is negative: y_1^-1 = -√(3/4π) y, y_1^0 = √(3/4π) z,
-y_1^1 = -√(3/4π) x. Coefficient i = l (l + 1) + m holds band l, order m. The polynomials' z is the world's z.
+The basis is listed by Sloan 2008, "Stupid Spherical Harmonics (SH) Tricks", appendix A2. It is orthonormal over the
+sphere and has the Condon-Shortley sign, so that basis functions of odd m are negative: y_1^-1 = -√(3/4π) y,
+y_1^0 = √(3/4π) z, y_1^1 = -√(3/4π) x. Coefficient i = l (l + 1) + m belongs to band l, order m. The z of the
+polynomials is the world's z.
 
-Coefficients are an array's last axis, (..., bands²), except where functions have channels: `project`, `evaluate` and
-`irradiance` deal in (bands², C).
+The coefficients are the last axis of an array, (..., bands²). Functions with C channels are the exception: `project`,
+`evaluate` and `irradiance` use (bands², C).
 """
 
 from collections.abc import Sequence
@@ -14,15 +15,16 @@ import numpy as np
 
 MAX_BANDS = 4
 
-# Ramamoorthi & Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq. 8: the clamped cosine
+# A_l, the clamped cosine (Ramamoorthi & Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps",
+# eq. 8)
 COSINE_BANDS = np.array([np.pi, 2 * np.pi / 3, np.pi / 4, 0.0])
 
-# Sloan 2008: from a zonal coefficient to the factor of y_lm(d)
+# Sloan 2008: a zonal coefficient times this is the factor of y_lm(d)
 ZONAL_BANDS = np.sqrt(4 * np.pi / np.array([1, 3, 5, 7]))
 
 
 def basis(directions: np.ndarray, bands: int = 3) -> np.ndarray:
-    """y_i at unit `directions` (..., 3): (..., bands²) float64; `bands` in [1, 4], else ValueError."""
+    """Basis functions y_i at unit `directions` (..., 3): (..., bands²) float64. ValueError if `bands` is not 1 to 4."""
     if not 1 <= bands <= MAX_BANDS:
         raise ValueError(f"bands = {bands} is outside [1, {MAX_BANDS}]")
     x, y, z = np.moveaxis(np.asarray(directions, np.float64), -1, 0)
@@ -50,8 +52,8 @@ def basis(directions: np.ndarray, bands: int = 3) -> np.ndarray:
 def project(values: np.ndarray, directions: np.ndarray, solid_angles: np.ndarray, bands: int = 3) -> np.ndarray:
     """Coefficients (bands², C) of a function sampled over the whole sphere.
 
-    `values` (n, C) at unit `directions` (n, 3), each standing for `solid_angles` (n,) steradians, which add up to 4π.
-    The mean is projected analytically and only the deviation from it by summation: a constant comes out exact.
+    `values` (n, C) are samples at unit `directions` (n, 3). Each sample covers `solid_angles` (n,) steradians; their
+    sum is 4π. The mean is projected analytically, and only the deviation is summed: a constant is projected exactly.
     """
     values = np.asarray(values, np.float64)
     mean = solid_angles @ values / solid_angles.sum()
@@ -61,12 +63,12 @@ def project(values: np.ndarray, directions: np.ndarray, solid_angles: np.ndarray
 
 
 def evaluate(coefficients: np.ndarray, directions: np.ndarray) -> np.ndarray:
-    """Σ c_i y_i at unit `directions` (..., 3): (..., C) for `coefficients` (bands², C)."""
+    """The function Σ c_i y_i at unit `directions` (..., 3), with `coefficients` (bands², C). Returns (..., C)."""
     return basis(directions, round(np.sqrt(len(coefficients)))) @ coefficients
 
 
 def irradiance(coefficients: np.ndarray) -> np.ndarray:
-    """Radiance coefficients (bands², ...) to those of the irradiance on a surface facing each direction.
+    """Coefficients of the irradiance, as a function of the surface normal, from those of the radiance: (bands², ...).
 
     The convolution with the clamped cosine scales band l by A_l (Ramamoorthi & Hanrahan 2001, eq. 8).
     """
@@ -76,7 +78,10 @@ def irradiance(coefficients: np.ndarray) -> np.ndarray:
 
 
 def window(coefficients: np.ndarray, weights: np.ndarray | Sequence[float]) -> np.ndarray:
-    """`coefficients` (..., bands²) with band l times `weights[..., l]` (..., bands): (..., bands²)."""
+    """`coefficients` (..., bands²) with band l multiplied by `weights[..., l]`: (..., bands²).
+
+    The last axis of `weights` has one entry per band. Raises ValueError if it does not fit the coefficients.
+    """
     coefficients, weights = np.asarray(coefficients, np.float64), np.asarray(weights, np.float64)
     bands = weights.shape[-1]
     if coefficients.shape[-1] != bands**2:
@@ -85,20 +90,20 @@ def window(coefficients: np.ndarray, weights: np.ndarray | Sequence[float]) -> n
 
 
 def zonal_lobe(zonal: np.ndarray | Sequence[float], directions: np.ndarray) -> np.ndarray:
-    """(..., 16): the lobe with the coefficients `zonal` (..., 4) of order 0, turned from z to `directions` (..., 3).
+    """A lobe around the z axis, rotated to each of the unit `directions` d (..., 3): (..., 16).
 
-    c_lm = √(4π / (2l + 1)) z_l y_lm(d) (Sloan 2008); directions are unit vectors.
+    `zonal` (..., 4) are the lobe's coefficients z_l of order 0: c_lm = √(4π / (2l + 1)) z_l y_lm(d) (Sloan 2008).
     """
     return window(basis(directions, MAX_BANDS), ZONAL_BANDS * np.asarray(zonal, np.float64))
 
 
 def clamped_cosine(directions: np.ndarray) -> np.ndarray:
-    """max(w·d, 0), as a function of w, at unit `directions` d (..., 3): (..., 16)."""
+    """Coefficients (..., 16) of max(w·d, 0) as a function of w, for unit `directions` d (..., 3)."""
     return window(basis(directions, MAX_BANDS), COSINE_BANDS)
 
 
 def hanning(width: float, bands: int = MAX_BANDS) -> np.ndarray:
-    """Weights (bands,) of a Hann window against ringing, `width` > 0 bands wide (Sloan 2008)."""
+    """Weights (bands,) of a Hann window against ringing, `width` > 0 in bands (Sloan 2008); else ValueError."""
     if not width > 0:
         raise ValueError(f"width = {width} is not above 0")
     band = np.arange(bands)
@@ -108,21 +113,21 @@ def hanning(width: float, bands: int = MAX_BANDS) -> np.ndarray:
 def light_lobe(weights: np.ndarray | Sequence[float] = (1, 1, 1, 1)) -> np.ndarray:
     """Zonal coefficients (..., 4) of a light without size, windowed by `weights` (..., 4).
 
-    Scaled so that an open surface that faces the light receives irradiance 1 (Sloan 2008), which takes weights that
-    leave it some: else ValueError.
+    The lobe is scaled so that an unoccluded surface facing the light receives irradiance 1 (Sloan 2008). Raises
+    ValueError if the weights leave that surface dark: then no scale exists.
     """
-    lobe = np.asarray(weights, np.float64) / ZONAL_BANDS  # of a Dirac impulse: y_l0 at the pole
+    lobe = np.asarray(weights, np.float64) / ZONAL_BANDS  # a Dirac impulse: y_l0 at the pole
     facing = lobe @ (COSINE_BANDS / ZONAL_BANDS)
     if not np.all(facing > 0):
         raise ValueError(f"weights = {weights} leave the surface that faces the light dark")
     return lobe / facing[..., None]
 
 
-# --- rotation and product by quadrature: plain
+# --- rotation and product, by quadrature over the sphere
 
 
 def _quadrature(rings: int) -> tuple[np.ndarray, np.ndarray]:
-    """Directions (n, 3) and solid angles (n,): Gauss-Legendre rings × azimuths, exact up to degree 2·rings - 1."""
+    """Directions (n, 3) and solid angles (n,): Gauss-Legendre rings × azimuths; exact up to degree 2·rings - 1."""
     z, weights = np.polynomial.legendre.leggauss(rings)
     step = np.pi / rings
     azimuth, across = step * np.arange(2 * rings), np.sqrt(1 - z**2)[:, None]
@@ -130,30 +135,31 @@ def _quadrature(rings: int) -> tuple[np.ndarray, np.ndarray]:
     return np.stack(directions, -1).reshape(-1, 3), np.repeat(weights * step, 2 * rings)
 
 
-_NODES, _SOLID_ANGLES = _quadrature(5)  # degree 9: the three factors of a product
+_NODES, _SOLID_ANGLES = _quadrature(5)  # exact up to degree 9: a product integral has three factors of degree 3
 _NODE_BASIS = basis(_NODES, MAX_BANDS)
 
 
 def rotation(matrix: np.ndarray) -> np.ndarray:
-    """D (..., 16, 16), block-diagonal up to rounding, that turns coefficients by `matrix` (..., 3, 3): f'(w) = f(Rᵀw).
+    """The matrix D (..., 16, 16) that rotates coefficients by R = `matrix` (..., 3, 3): f'(w) = f(Rᵀw).
 
-    D_ij = ∫ y_i(R u) y_j(u) du. Raises ValueError where `matrix` is no rotation to 1e-5, which float32 keeps.
+    D_ij = ∫ y_i(R u) y_j(u) du, block-diagonal up to rounding. Raises ValueError if `matrix` deviates from a rotation
+    by more than 1e-5; float32 rounding stays below that.
     """
     matrix = np.asarray(matrix, np.float64)
     transposed = np.swapaxes(matrix, -1, -2)
     deviation = np.abs(matrix @ transposed - np.eye(3)).max()
     if not (deviation <= 1e-5 and np.all(np.linalg.det(matrix) > 0)):
-        raise ValueError(f"matrix = {matrix.tolist()} is no rotation")
+        raise ValueError(f"matrix = {matrix.tolist()} is not a rotation")
     turned = basis(_NODES @ transposed, MAX_BANDS) * _SOLID_ANGLES[:, None]
     return np.swapaxes(turned, -1, -2) @ _NODE_BASIS
 
 
 def rotate(coefficients: np.ndarray, matrix: np.ndarray) -> np.ndarray:
-    """`coefficients` (..., 16) turned by the rotation `matrix` (..., 3, 3), else ValueError: (..., 16)."""
+    """`coefficients` (..., 16) of a function rotated by `matrix` (..., 3, 3); ValueError as in `rotation`."""
     return (rotation(matrix) @ np.asarray(coefficients, np.float64)[..., None])[..., 0]
 
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Coefficients (..., 16) of the product of two functions (..., 16), cut to 4 bands."""
+    """Coefficients (..., 16) of the product of two functions (..., 16), truncated to 4 bands."""
     values = (a @ _NODE_BASIS.T) * (b @ _NODE_BASIS.T)
     return values * _SOLID_ANGLES @ _NODE_BASIS

@@ -1,20 +1,23 @@
-"""The size of a scene's features: how far its local maxima are apart, a first value for the radius of occlusion.
+"""The average distance between a scene's local maxima: a first value for the radius of occlusion.
 
 SSDO (Ritschel, Grosch and Seidel 2009, section 7.2): "an initial value for r_max can be found by computing the average
-distance between two local maxima in the geometry". Here a local maximum is a point, or a plateau, that is higher than
-all its neighbours in the mesh along one of the mesh's own six axis directions; its distance is the one to the nearest
-other maximum of the same direction, in the world.
+distance between two local maxima in the geometry". The paper does not define a local maximum. Here it is a point, or a
+plateau, that is higher than all its neighbours in the mesh along one of the mesh's six local axis directions. Distances
+are measured in world space, to the nearest other maximum of the same axis direction.
 """
 
 import numpy as np
 
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
-FLAT = 1e-6  # of the mesh's extent: what differs by less is one plateau
-BRUTE_FORCE = 512  # points: fewer are compared each with each, for SciPy's trees take 0.2 s to import
+FLAT = 1e-6  # of the mesh's extent: points whose heights differ by less form one plateau
+BRUTE_FORCE = 512  # points: fewer points are compared pair by pair, because importing SciPy's trees takes 0.2 s
 
 
 def local_maxima(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Centres (n, 3) of the local maxima of a mesh, `points` (P, 3) joined by `edges` (E, 2), and their axis (n,)."""
+    """Centres (n, 3) of the local maxima of a mesh, and the index (n,) of each maximum's direction in `AXES`.
+
+    `points` (P, 3) are the mesh's vertices, `edges` (E, 2) pairs of indices of neighbouring vertices.
+    """
     flat = FLAT * float(np.ptp(points, axis=0).max())
     maxima, axes = [], []
     for number, axis in enumerate(AXES):
@@ -25,7 +28,7 @@ def local_maxima(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
         top = height >= highest - flat
         level = edges[np.abs(height[edges[:, 0]] - height[edges[:, 1]]) <= flat]
         plateau = _connected(len(points), level[top[level].any(axis=1)])
-        # one member that has a higher neighbour, and the plateau is a terrace on the way up
+        # a plateau with a higher neighbour at any of its points is a terrace, not a maximum
         whole = np.ones(len(points), bool)
         np.logical_and.at(whole, plateau, top)
         member = top & whole[plateau]
@@ -38,26 +41,26 @@ def local_maxima(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
 
 
 def _connected(count: int, edges: np.ndarray) -> np.ndarray:
-    """(count,): the least index that each point is joined to; labels spread along the edges until none changes."""
+    """(count,): for each point the least index in its connected component. Labels spread until none changes."""
     label = np.arange(count)
     while True:
         before = label.copy()
         np.minimum.at(label, edges[:, 0], before[edges[:, 1]])
         np.minimum.at(label, edges[:, 1], before[edges[:, 0]])
-        label = label[label]  # and along the way that is known already
+        label = label[label]  # pointer jumping: fewer rounds
         if (label == before).all():
             return label
 
 
 def mean_nearest_distance(points: np.ndarray) -> float | None:
-    """The mean distance of `points` (n, 3) to their nearest neighbours; None for fewer than two."""
+    """The mean distance from each of `points` (n, 3) to its nearest neighbour; None for fewer than two points."""
     if len(points) < 2:
         return None
     if len(points) > BRUTE_FORCE:
         from scipy.spatial import KDTree
 
         return float(KDTree(points).query(points, k=2)[0][:, 1].mean())
-    near_origin = points - points.mean(axis=0)  # the differences of squares below keep their digits there
+    near_origin = points - points.mean(axis=0)  # smaller numbers: less cancellation in the squares below
     length = (near_origin**2).sum(axis=1)
     squared = length[:, None] + length[None] - 2 * near_origin @ near_origin.T
     np.fill_diagonal(squared, np.inf)

@@ -1,4 +1,4 @@
-"""Vertex normals for meshes that come without: smooth, except across creases."""
+"""Vertex normals for meshes that have none: smooth, except across creases."""
 
 import numpy as np
 
@@ -6,10 +6,13 @@ import numpy as np
 def smooth_normals(
     vertices: np.ndarray, faces: np.ndarray, crease: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Normals weighted by corner angle (Thürmer and Wüthrich 1998), averaged over faces within `crease` degrees.
+    """Vertex normals: face normals weighted by corner angle (Thürmer and Wüthrich 1998).
 
-    Vertices are welded by position first, so that seams in UV do not show; a vertex whose corners end in different
-    normals is split. Returns vertices (V', 3), faces (F, 3), the source vertex of each (V',), normals (V', 3).
+    `vertices` (V, 3), `faces` (F, 3) vertex indices. Each corner averages the faces at its point whose normals are at
+    most `crease` degrees from its own face's normal. Vertices at the same position count as one point, so that UV seams
+    stay smooth. A vertex is split if its corners get different normals.
+
+    Returns vertices (V', 3), faces (F, 3), the index of each new vertex's source (V',), and unit normals (V', 3).
     """
     _, point = np.unique(vertices, axis=0, return_inverse=True)
     point = point.reshape(-1)
@@ -20,7 +23,7 @@ def smooth_normals(
     face_normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
     face_normal /= np.maximum(np.linalg.norm(face_normal, axis=1, keepdims=True), 1e-300)
 
-    # every pair of corners that meet in one point and whose faces are within the crease angle
+    # pairs of corners at the same point, of faces within the crease angle
     corner_point = point[faces].reshape(-1)
     corner_face = np.repeat(np.arange(len(faces)), 3)
     weighted = face_normal[corner_face] * angle.reshape(-1, 1)
@@ -36,9 +39,10 @@ def smooth_normals(
 def _sum_over_neighbours(
     corner_point: np.ndarray, normal: np.ndarray, weighted: np.ndarray, cos_crease: float
 ) -> np.ndarray:
-    """For each corner, the sum of `weighted` over the corners at the same point within the crease angle.
+    """For each corner, the sum of `weighted` (C, 3) over the corners at the same point within the crease angle.
 
-    Corners are sorted by point; the k-th round pairs each corner with the k-th after it, while points have that many.
+    Corners are sorted by point. Round k pairs each corner with the k-th corner after it, if both are at the same point.
+    The rounds end when no such pair is left.
     """
     order = np.argsort(corner_point, kind="stable")
     point, normal, weighted = corner_point[order], normal[order], weighted[order]

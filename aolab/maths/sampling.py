@@ -1,4 +1,4 @@
-"""Sample sets: low-discrepancy, stratified, seeded."""
+"""Directions over the hemisphere: low-discrepancy, stratified, seeded. Their lengths encode the falloff."""
 
 from functools import lru_cache
 
@@ -6,7 +6,7 @@ import numpy as np
 
 
 def radical_inverse(indices: np.ndarray, base: int) -> np.ndarray:
-    """Van der Corput's sequence: the digits of `indices` in `base`, mirrored at the point; float64 in [0, 1)."""
+    """Van der Corput's sequence: the digits of `indices` in `base`, mirrored at the radix point; float64 in [0, 1)."""
     result, digit_value, rest = np.zeros(len(indices)), 1.0 / base, indices.copy()
     while rest.any():
         result += digit_value * (rest % base)
@@ -17,16 +17,18 @@ def radical_inverse(indices: np.ndarray, base: int) -> np.ndarray:
 
 @lru_cache(maxsize=256)
 def cosine_hemisphere(count: int, seed: int, falloff: float = 0.0) -> np.ndarray:
-    """Directions with density cosθ/π around +z, times their reach: (count, 4) float32, xyz and w, an offset in [0, 1).
+    """The kernel (count, 4) float32. xyz: a direction around +z, scaled by its reach; w: an offset in [0, 1), in steps.
 
-    Hammersley points (strata in elevation, radical inverses in the other dimensions), moved as a whole by a random
-    vector that `seed` decides (Cranley and Patterson 1976), mapped by Malley's method: r = √u, z = √(1 - u).
-    The reach, in radii, is drawn so that an occluder at distance d is within it with the probability `influence(d²)`:
-    the falloff costs the shader nothing.
+    The directions have the density cosθ/π. They are Hammersley points (strata in elevation, radical inverses in the
+    other dimensions), shifted as a whole by a random vector from `seed` (Cranley and Patterson 1976), and mapped by
+    Malley's method: r = √u, z = √(1 - u).
+
+    The reach, in radii, is random: an occluder at distance d lies within it with the probability `influence(d²)`. The
+    falloff therefore costs nothing in the shader.
     """
     index = np.arange(count)
     shift = np.random.default_rng(seed).random(4)
-    # the first set is the sequence itself, with its points in the middle of their strata
+    # seed 0 has its elevations in the middle of their strata
     elevation = (index + (0.5 if seed == 0 else shift[0])) / count
     azimuth = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
     offset = (radical_inverse(index, 3) + shift[2]) % 1
@@ -41,10 +43,11 @@ def cosine_hemisphere(count: int, seed: int, falloff: float = 0.0) -> np.ndarray
 
 
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
-    """How much an occluder counts, in [0, 1], at `squared_distance` in squared radii.
+    """The weight of an occluder, in [0, 1], at `squared_distance` in squared radii.
 
-    It fades by a smoothstep over the outer share `falloff` of the radius, as SSDO's occluders do near the hemisphere's
-    border (Ritschel, Grosch and Seidel 2009, section 7.2); 0 is a hard edge: occlusion within a radius.
+    The weight fades by a smoothstep over the outer share `falloff` of the radius, as in SSDO near the border of the
+    hemisphere (Ritschel, Grosch and Seidel 2009, section 7.2). With a falloff of 0 the weight steps from 1 to 0 at the
+    radius.
     """
     width = max(falloff, 1e-4)
     t = np.clip((np.sqrt(squared_distance) - (1 - width)) / width, 0, 1)

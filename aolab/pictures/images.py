@@ -1,4 +1,4 @@
-"""Pictures from files: textures (8 bits, sRGB) and radiance (linear, floats). Every refusal is a `FileError`."""
+"""Pictures from files: textures (8 bits, sRGB) and radiance (linear, floats). Unreadable files raise `FileError`."""
 
 import io
 import warnings
@@ -13,20 +13,22 @@ from ..errors import FileError
 from . import rgbe
 
 MAX_PIXELS = 1 << 27  # 16384 × 8192, the largest environment maps in use; 0.5 GB as RGBA, 1.6 GB as float RGB
-FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "GIF", "TIFF", "PPM")  # none that runs another program, as EPS does
+FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "GIF", "TIFF", "PPM")  # not EPS: Pillow runs Ghostscript for it
 RADIANCE_SUFFIXES = (".exr", ".hdr")
 
 
 def read_image(source: str | PathLike[str] | bytes, name: str, max_pixels: int = MAX_PIXELS) -> np.ndarray:
-    """A picture, from a path or its bytes, as (H, W, 4) uint8, sRGB and alpha, top row first.
+    """A picture, from a path or from the file's bytes, as (H, W, 4) uint8, sRGB and alpha, top row first.
 
-    Palettes, grey, 16 bits and CMYK become RGBA; EXIF (its rotation included) is ignored, as glTF requires. Of an
-    animation the first frame. `name` stands for the picture in errors. Raises `FileError` if it is missing, corrupt,
-    none of `FORMATS`, or has more than `max_pixels` pixels (checked before anything is decoded).
+    Palette, grey, 16-bit and CMYK pictures are converted to RGBA. EXIF data is ignored, its rotation included, as glTF
+    requires. An animation gives its first frame. `name` is the picture's name in errors.
+
+    Raises `FileError` if the picture is missing, is corrupt, has none of the `FORMATS`, or has more than `max_pixels`
+    pixels. The size is checked before anything is decoded.
     """
     data = source if isinstance(source, bytes) else _bytes(Path(source), name)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # Pillow's remarks on metadata; its size warning is the check below
+        warnings.simplefilter("ignore")  # about metadata, and about the size, which is checked below
         try:
             image = Image.open(io.BytesIO(data), formats=FORMATS)
         except Image.DecompressionBombError as error:
@@ -36,7 +38,7 @@ def read_image(source: str | PathLike[str] | bytes, name: str, max_pixels: int =
             raise FileError(f"image '{name}' is corrupt or none of {', '.join(FORMATS)}: {error}") from None
         _refuse_size(f"image '{name}'", image.width, image.height, max_pixels)
         if image.mode == "F":
-            raise FileError(f"image '{name}' holds floating-point numbers; only .exr and .hdr are read as such")
+            raise FileError(f"image '{name}' has floating-point numbers; only .exr and .hdr files may have them")
         try:
             return _rgba(image)
         except Exception as error:
@@ -44,14 +46,14 @@ def read_image(source: str | PathLike[str] | bytes, name: str, max_pixels: int =
 
 
 def _rgba(image: Image.Image) -> np.ndarray:
-    if image.mode.startswith("I"):  # Pillow would clip 16 bits to 8, not scale them
+    if image.mode.startswith("I"):  # Pillow would clip 16-bit values to 255 instead of scaling them
         grey = np.rint(np.clip(np.asarray(image), 0, 65535) / 257).astype(np.uint8)
         return np.dstack([grey, grey, grey, np.full_like(grey, 255)])
     return np.array(image.convert("RGBA"))
 
 
 def linear_from_srgb(pixels: np.ndarray) -> np.ndarray:
-    """uint8 sRGB to linear float32 in [0, 1] (IEC 61966-2-1), any shape."""
+    """Linear float32 in [0, 1] from sRGB uint8 `pixels` of any shape (IEC 61966-2-1)."""
     code = np.arange(256) / 255
     linear = np.where(code <= 0.04045, code / 12.92, ((code + 0.055) / 1.055) ** 2.4)
     return linear.astype(np.float32)[pixels]
@@ -60,14 +62,14 @@ def linear_from_srgb(pixels: np.ndarray) -> np.ndarray:
 def read_radiance(path: str | PathLike[str], max_pixels: int = MAX_PIXELS) -> np.ndarray:
     """Linear radiance (H, W, 3) float32, top row first, from `.exr` (R, G, B or a single Y) or `.hdr`.
 
-    NaN and infinite numbers are passed on. Raises `FileError` if the file is missing, corrupt, of another kind, lacks
-    channels, or has more than `max_pixels` pixels (checked before anything is decoded).
+    NaN and infinite pixels are returned as they are. Raises `FileError` if the file is missing, is corrupt, is of
+    another kind, lacks channels, or has more than `max_pixels` pixels. The size is checked before anything is decoded.
     """
     path = Path(path)
     what = f"image '{path}'"
     suffix = path.suffix.lower()
     if suffix not in RADIANCE_SUFFIXES:
-        raise FileError(f"{what}: '{suffix}' holds no radiance; known: {', '.join(RADIANCE_SUFFIXES)}")
+        raise FileError(f"{what}: '{suffix}' is not a radiance format; known: {', '.join(RADIANCE_SUFFIXES)}")
     return _read_exr(path, what, max_pixels) if suffix == ".exr" else _read_hdr(path, what, max_pixels)
 
 
@@ -84,12 +86,12 @@ def _read_hdr(path: Path, what: str, max_pixels: int) -> np.ndarray:
 
 def _read_exr(path: Path, what: str, max_pixels: int) -> np.ndarray:
     import Imath
-    import OpenEXR  # here: most scenes need neither
+    import OpenEXR  # imported here: most scenes need neither
 
     if not path.is_file():
         raise FileError(f"{what} does not exist")
     try:
-        # not OpenEXR.File, which prints to stdout and returns no parts where the pixels are corrupt; this one raises
+        # if the pixels are corrupt, InputFile raises; OpenEXR.File prints to stdout and returns no parts
         with closing(OpenEXR.InputFile(str(path))) as file:
             header = file.header()
             window = header["dataWindow"]
@@ -101,7 +103,7 @@ def _read_exr(path: Path, what: str, max_pixels: int) -> np.ndarray:
             planes = file.channels(names, Imath.PixelType(Imath.PixelType.FLOAT))
     except FileError:
         raise
-    except Exception as error:  # OSError from the library, TypeError and others from its wrapper
+    except Exception as error:  # the library raises OSError, its wrapper TypeError and others
         raise FileError(f"{what} is not a readable OpenEXR picture: {error}") from None
     pixels = np.stack([np.frombuffer(plane, np.float32).reshape(height, width) for plane in planes], axis=-1)
     return pixels if len(names) == 3 else np.repeat(pixels, 3, axis=2)
@@ -113,7 +115,7 @@ def _color_channels(channels: dict, what: str) -> list[str]:
         return ["R", "G", "B"]
     if "Y" in whole and not {"RY", "BY"} & set(channels):
         return ["Y"]
-    raise FileError(f"{what} has the channels {', '.join(sorted(channels))}; needed are R, G, B or a single Y")
+    raise FileError(f"{what} has the channels {', '.join(sorted(channels))}; it needs R, G, B or a single Y")
 
 
 def _bytes(path: Path, name: str) -> bytes:

@@ -1,6 +1,6 @@
 """Decoder for Radiance pictures (.hdr): Ward 1991, "Real Pixels", Graphics Gems II; the Radiance file format notes.
 
-Own code because no well-kept wheel reads the format: Pillow does not, imageio is ruled out for HDR.
+This is own code because no well-kept package reads the format: Pillow does not, and imageio misreads HDR files.
 """
 
 import re
@@ -8,13 +8,13 @@ import re
 import numpy as np
 
 MAX_HEADER = 1 << 16  # bytes; real headers are a few hundred
-RUN_WIDTHS = range(8, 0x8000)  # scanline widths that the new run-length encoding can hold
+RUN_WIDTHS = range(8, 0x8000)  # scanline widths that the new run-length encoding can store
 
 
 def read_header(data: bytes) -> tuple[int, int, np.ndarray, int]:
-    """Height, width, the factors (3,) that pixels must be divided by, and where the pixels begin.
+    """Height, width, the factors (3,) by which pixels must be divided, and the offset of the first pixel in bytes.
 
-    Raises ValueError for what is not an RGBE picture stored row by row from the top left.
+    Raises ValueError if `data` is not an RGBE picture stored row by row from the top left.
     """
     end = data.find(b"\n\n", 0, MAX_HEADER)
     if not data.startswith((b"#?RADIANCE", b"#?RGBE")) or end < 0:
@@ -24,7 +24,7 @@ def read_header(data: bytes) -> tuple[int, int, np.ndarray, int]:
         key, _, value = line.partition("=")
         if key == "FORMAT" and value.strip() != "32-bit_rle_rgbe":
             raise ValueError(f"its FORMAT is '{value.strip()}', not '32-bit_rle_rgbe'")
-        if key in ("EXPOSURE", "COLORCORR"):  # each has multiplied the pixels already, and so do several
+        if key in ("EXPOSURE", "COLORCORR"):  # the writer multiplied the pixels by each of them
             exposure *= np.array(value.split(), float)
     if not (np.isfinite(exposure).all() and (exposure > 0).all()):
         raise ValueError(f"its exposure is {exposure.tolist()}")
@@ -37,14 +37,14 @@ def read_header(data: bytes) -> tuple[int, int, np.ndarray, int]:
 
 
 def decode(data: bytes, start: int, height: int, width: int) -> np.ndarray:
-    """The pixels (height, width, 4) uint8: red, green, blue mantissas and their exponent. ValueError if corrupt."""
+    """The pixels (height, width, 4) uint8: red, green and blue mantissas, and their exponent. ValueError if corrupt."""
     if width in RUN_WIDTHS and data[start : start + 2] == b"\2\2" and data[start + 2 : start + 3] < b"\x80":
         return _new_runs(data, start, height, width)
     return _flat_or_old_runs(data, start, height, width)
 
 
 def _new_runs(data: bytes, at: int, height: int, width: int) -> np.ndarray:
-    """Each scanline: 2, 2, width; then each of the four components by itself, in runs and literal stretches."""
+    """A scanline starts with 2, 2 and its width. Its four components follow one by one, in runs and literals."""
     marker = bytes([2, 2, width >> 8, width & 255])
     scanlines = bytearray()
     try:
@@ -63,7 +63,7 @@ def _new_runs(data: bytes, at: int, height: int, width: int) -> np.ndarray:
                         scanlines += data[at + 1 : at + 1 + count]
                         at += 1 + count
                     if not count:
-                        raise ValueError(f"row {row} of {height} holds an empty run")
+                        raise ValueError(f"row {row} of {height} has an empty run")
                 if len(scanlines) > full:
                     raise ValueError(f"row {row} of {height} is longer than {width} pixels")
     except IndexError:
@@ -72,7 +72,7 @@ def _new_runs(data: bytes, at: int, height: int, width: int) -> np.ndarray:
 
 
 def _flat_or_old_runs(data: bytes, start: int, height: int, width: int) -> np.ndarray:
-    """Plain pixels, where 1, 1, 1, n repeats the one before it n times; a further such one counts 256 times more."""
+    """Plain pixels. A pixel 1, 1, 1, n repeats the pixel before it n times; the n of a second one counts 256-fold."""
     codes = np.frombuffer(data, np.uint8, (len(data) - start) // 4 * 4, start).reshape(-1, 4)
     repeats = (codes[:, :3] == 1).all(axis=1)
     if len(codes) >= height * width and not repeats[: height * width].any():
@@ -80,8 +80,8 @@ def _flat_or_old_runs(data: bytes, start: int, height: int, width: int) -> np.nd
     index = np.arange(len(codes))
     source = np.maximum.accumulate(np.where(repeats, -1, index))  # the pixel that each code repeats
     if (source < 0).any():
-        raise ValueError("it begins with a repetition, of nothing")
-    place = np.minimum(index - source - 1, 3).clip(0)  # a fourth digit already counts beyond any picture
+        raise ValueError("it begins with a repetition, but there is no pixel to repeat")
+    place = np.minimum(index - source - 1, 3).clip(0)  # a fourth digit counts beyond any picture already
     counts = np.where(repeats, codes[:, 3].astype(np.int64) << 8 * place, 1)
     ends = np.cumsum(counts)
     last = int(np.searchsorted(ends, height * width))
@@ -93,9 +93,9 @@ def _flat_or_old_runs(data: bytes, start: int, height: int, width: int) -> np.nd
 
 
 def radiance(rgbe: np.ndarray) -> np.ndarray:
-    """(..., 4) uint8 to (..., 3) float32: mantissa / 256 · 2^(exponent - 128), and 0 where the exponent is 0.
+    """Radiance (..., 3) float32 from `rgbe` (..., 4) uint8: mantissa / 256 · 2^(exponent - 128).
 
-    Without Ward's half step on the mantissa, as most readers have it: 0 stays 0 and 1 stays 1.
+    An exponent of 0 gives 0. Like most readers, this one does not add Ward's half step to the mantissa: 0 stays 0 and 1 stays 1.
     """
     scale = np.ldexp(np.float32(1), np.arange(256) - 136).astype(np.float32)
     scale[0] = 0

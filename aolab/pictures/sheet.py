@@ -1,22 +1,25 @@
-"""Contact sheets: frames side by side, each with its caption; and tables as pictures."""
+"""Contact sheets (pictures side by side with captions), and tables drawn as pictures."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
-MARGIN, CAPTION, LINE, CELL = 8, 26, 24, 12  # pixels; CELL: the space between a table's columns, left and right
+MARGIN, CAPTION, LINE, CELL = 8, 26, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
 _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
 
 
 def gray(values: np.ndarray) -> np.ndarray:
-    """(H, W) in [0, 1] as (H, W, 3) uint8; NaN, the background, is white."""
+    """A grey picture (H, W, 3) uint8 of `values` (H, W) in [0, 1]. NaN, the background, is white."""
     scaled = np.clip(np.nan_to_num(values, nan=1.0), 0, 1) * 255
     return np.repeat((scaled + 0.5).astype(np.uint8)[..., None], 3, axis=2)
 
 
 def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, *, title: str = "") -> Image.Image:
-    """Put captioned pictures, each (H, W, 3) uint8 of one size, into rows of `columns`; `title` stands above."""
+    """A sheet of captioned pictures in rows of `columns`, under a `title`.
+
+    `pictures`: (caption, picture) pairs; the pictures are (H, W, 3) uint8, all of the same size.
+    """
     height, width = pictures[0][1].shape[:2]
     rows = -(-len(pictures) // columns)
     cell = width + MARGIN, height + CAPTION + MARGIN
@@ -35,7 +38,10 @@ def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, 
 
 
 def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
-    """Draw `rows` of as many cells each, the first as a heading, flush right but for the first column."""
+    """Draw a table under a `title`. The first row is the heading; all rows have equally many cells.
+
+    The first column is aligned left, the others right.
+    """
     font = ImageFont.load_default(size=15)
     widths = [int(max(font.getlength(row[column]) for row in rows)) + 2 * CELL for column in range(len(rows[0]))]
     lines = _wrapped(title, sum(widths), font)

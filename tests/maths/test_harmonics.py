@@ -206,8 +206,8 @@ def test_rotation_is_orthogonal_blockwise_and_composes():
 
 
 @pytest.mark.parametrize("matrix", [-np.eye(3), 1.001 * np.eye(3), np.full((3, 3), np.nan), np.zeros((3, 3))])
-def test_what_is_no_rotation_is_refused(matrix):
-    with pytest.raises(ValueError, match=r"matrix = \[\[.*\]\] is no rotation"):
+def test_a_matrix_that_is_not_a_rotation_is_refused(matrix):
+    with pytest.raises(ValueError, match=r"matrix = \[\[.*\]\] is not a rotation"):
         sh.rotation(matrix)
 
 

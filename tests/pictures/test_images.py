@@ -112,7 +112,7 @@ def test_a_missing_picture_is_named(tmp_path):
 
 def test_floating_point_tiff_is_sent_to_exr():
     image = Image.fromarray(np.ones((2, 2), np.float32))
-    with pytest.raises(FileError, match=r"floating-point numbers; only \.exr and \.hdr"):
+    with pytest.raises(FileError, match=r"floating-point numbers; only \.exr and \.hdr files"):
         read_image(encoded(image, "TIFF"), "a")
 
 
@@ -170,7 +170,7 @@ def test_exr_passes_infinite_numbers_on(tmp_path):
 def test_exr_without_the_channels_says_which_it_has(tmp_path):
     plane = np.ones((2, 2), np.float32)
     path = write_exr(tmp_path / "depth.exr", {"Z": plane, "R": plane})
-    with pytest.raises(FileError, match=r"depth\.exr' has the channels R, Z; needed are R, G, B or a single Y"):
+    with pytest.raises(FileError, match=r"depth\.exr' has the channels R, Z; it needs R, G, B or a single Y"):
         read_radiance(path)
 
 
@@ -305,7 +305,7 @@ def test_the_largest_hdr_number_is_finite(tmp_path):
         (HEADER, b"-Y 2 +X 8", bytes([2, 2, 0, 8, 136, 5, 136]), "it ends in row 0 of 2"),
         (HEADER, b"-Y 2 +X 8", bytes([2, 2, 0, 8, *[136, 5] * 4]), "row 1 of 2 does not begin as a row of 8 pixels"),
         (HEADER, b"-Y 2 +X 8", bytes([2, 2, 0, 8, 137, 5]), "row 0 of 2 is longer than 8 pixels"),
-        (HEADER, b"-Y 2 +X 8", bytes([2, 2, 0, 8, 0, 5]), "row 0 of 2 holds an empty run"),
+        (HEADER, b"-Y 2 +X 8", bytes([2, 2, 0, 8, 0, 5]), "row 0 of 2 has an empty run"),
     ],
 )
 def test_bad_hdr_is_refused_by_name(tmp_path, header, size, body, message):
@@ -327,5 +327,5 @@ def test_missing_radiance_is_named(tmp_path, name):
 
 
 def test_another_kind_of_radiance_is_refused_with_the_known_ones(tmp_path):
-    with pytest.raises(FileError, match=r"'\.pfm' holds no radiance; known: \.exr, \.hdr"):
+    with pytest.raises(FileError, match=r"'\.pfm' is not a radiance format; known: \.exr, \.hdr"):
         read_radiance(tmp_path / "a.pfm")
