@@ -4,7 +4,7 @@
 >>> frame = aolab.render("boxes", "ssao", radius=0.5)
 >>> frame.save("boxes.png")
 
-What is public stands in `__init__.pyi`; each name is imported when first used, and none of them touches OpenGL.
+`__init__.pyi` lists the public names. A name is imported when it is first used; no import needs OpenGL.
 """
 
 import lazy_loader

@@ -1,11 +1,11 @@
-"""What can go wrong, by kind. Everything that aolab raises on purpose is an `aolab.Error`."""
+"""The exceptions of aolab. Every exception that aolab raises on purpose is an `aolab.Error`."""
 
 import difflib
 from collections.abc import Iterable
 
 
 class Error(Exception):
-    """The root of aolab's exceptions. Its text names the value, the place and the alternatives."""
+    """The base class of aolab's exceptions. The message names the value, the place and the alternatives."""
 
 
 class SceneError(Error, ValueError):
@@ -21,11 +21,11 @@ class ParameterError(Error, ValueError):
 
 
 class ShaderError(Error):
-    """A shader that cannot be assembled or compiled; names `glsl/FILE:LINE`."""
+    """A shader that cannot be assembled or compiled. The message names `glsl/FILE:LINE`."""
 
 
 class ContextError(Error, RuntimeError):
-    """No OpenGL context, or one used from another thread or process."""
+    """No OpenGL context can be created, or the context is used from another thread or process."""
 
 
 class GpuMemoryError(Error, MemoryError):
@@ -33,11 +33,11 @@ class GpuMemoryError(Error, MemoryError):
 
 
 class Notice(UserWarning):
-    """Something was repaired or left out, and the result is still usable. The shell prints it as a note."""
+    """A warning: input was repaired or left out, and the result is still usable. The shell prints it as a note."""
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """The tail of an error about an unknown name: the nearest known one, or all of them."""
+    """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names."""
     names = sorted(known)
     close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     listed = ", ".join(names) if names else "none"

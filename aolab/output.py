@@ -1,4 +1,4 @@
-"""Files that we write: checked before the work, replaced atomically after it."""
+"""Output files: the path is checked before the work, and the file is replaced atomically after it."""
 
 import os
 import tempfile
@@ -12,7 +12,10 @@ from .errors import FileError
 
 
 def check_writable(path: str | PathLike[str]) -> Path:
-    """The path, if a file can be written there; raises `FileError` naming what is in the way. For before the work."""
+    """`path` as a `Path`, if a file can be written there; to be called before long work.
+
+    Raises `FileError` that names the obstacle.
+    """
     target = Path(path)
     folder = target.parent
     if not folder.exists():
@@ -28,7 +31,10 @@ def check_writable(path: str | PathLike[str]) -> Path:
 
 @contextmanager
 def replacing(path: str | PathLike[str]) -> Iterator[IO[bytes]]:
-    """A file to write to that takes the place of `path` when complete; on an error the old file stays as it was."""
+    """A temporary file to write to. It replaces `path` when the block ends; after an error the old file is unchanged.
+
+    Raises `FileError` if `path` cannot be written.
+    """
     target = check_writable(path)
     temporary = None
     try:

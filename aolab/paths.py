@@ -1,4 +1,4 @@
-"""Where the shaders and scenes are: environment variable, else the checkout or the installed package."""
+"""The folders of the shaders and scenes: from an environment variable, else the installed package or the checkout."""
 
 import os
 from functools import cache
@@ -11,13 +11,16 @@ _PACKAGE = Path(__file__).resolve().parent
 
 @cache
 def _find(folder: str, variable: str) -> Path:
-    candidates = [_PACKAGE / folder, _PACKAGE.parent / folder]  # a checkout has no aolab/glsl
+    candidates = [
+        _PACKAGE / folder,
+        _PACKAGE.parent / folder,
+    ]  # the installed package; the checkout, which has no aolab/glsl
     if override := os.environ.get(variable):
         candidates = [Path(override).resolve()]
     for candidate in candidates:
         if candidate.is_dir():
             return candidate
-    raise FileError(f"no folder {' or '.join(map(str, candidates))}; set {variable} to the folder that holds {folder}/")
+    raise FileError(f"no folder {' or '.join(map(str, candidates))}; set {variable} to the path of a folder {folder}/")
 
 
 def glsl() -> Path:

@@ -1,4 +1,4 @@
-"""Hello: render a scene with a method, look at a number, save the picture."""
+"""Hello: render a scene with a method, print a number, save the picture."""
 
 from pathlib import Path
 

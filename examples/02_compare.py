@@ -1,4 +1,4 @@
-"""Compare: one parameter, three values, on one sheet."""
+"""Compare: three values of a parameter on one contact sheet."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Save buffers: every intermediate by name, as NumPy arrays."""
+"""Save buffers: every intermediate result by name, as NumPy arrays."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Animate: time is a scene's parameter; the lab keeps meshes and programs from frame to frame."""
+"""Animate: time is a parameter of the scene. The lab keeps meshes and programs from frame to frame."""
 
 from pathlib import Path
 

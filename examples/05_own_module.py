@@ -1,4 +1,4 @@
-"""Write your own module: parameters, a shader, and it is used like a built-in one."""
+"""Write your own module: a class with parameters and a shader, used like a built-in module."""
 
 from pathlib import Path
 
@@ -6,7 +6,7 @@ import aolab
 
 
 class Creases(aolab.Module):
-    """Darkens pixels whose neighbours' normals open towards them: curvature, the cheapest of all ambient occlusions."""
+    """Darkens hollows: pixels whose neighbours' normals point towards them. It is the cheapest ambient occlusion."""
 
     name = "creases"
     shader = """
@@ -33,8 +33,8 @@ class Creases(aolab.Module):
         }
     """
 
-    strength: float = aolab.parameter(0.5, "How much a hollow darkens.", ge=0, le=4)
-    reach: int = aolab.parameter(2, "How far the neighbours are.", ge=1, le=16, unit="pixels")
+    strength: float = aolab.parameter(0.5, "Factor on the darkening of a hollow.", ge=0, le=4)
+    reach: int = aolab.parameter(2, "Distance to the neighbouring pixels.", ge=1, le=16, unit="pixels")
 
 
 Path("out").mkdir(exist_ok=True)

@@ -1,6 +1,6 @@
-"""Reload while editing: change a shader of glsl/ in your editor, and the next frame shows it.
+"""Reload while editing: change a shader of glsl/ in your editor, and the next frame uses it.
 
-A shader that does not compile is reported, and the last good one stays in use. Stop with Ctrl-C.
+If a shader does not compile, its error is printed and the last good program stays in use. Stop with Ctrl-C.
 Usage: python examples/06_reload.py [frames]
 """
 
@@ -17,7 +17,7 @@ frames = int(sys.argv[1]) if len(sys.argv) > 1 else 10_000
 for number in range(frames):
     try:
         frame = lab.render(scene, "ssao")
-        frame.save("out/reload.png")  # an image viewer that follows its file shows it at once
+        frame.save("out/reload.png")  # an image viewer that reloads changed files shows each frame
         print(f"\rframe {number}: {frame.frame_ms:.0f} ms", end="")
     except aolab.ShaderError as error:
         print(f"\n{error}")

@@ -1,4 +1,4 @@
-"""The main job: a scene worth looking at, lit, and each module's result beside it, on one sheet."""
+"""The demo: the atrium with every module, lit and as visibility, on one contact sheet; and the time of each pass."""
 
 import sys
 from pathlib import Path
@@ -16,7 +16,7 @@ lab = aolab.Lab(SIZE)
 scene = aolab.load("atrium")
 pictures = []
 for name in MODULES:
-    lab.render(scene, name)  # once to compile and upload, once to measure
+    lab.render(scene, name)  # the first frame compiles and uploads, the second is timed
     frame = lab.render(scene, name)
     print(f"{name}: {frame.frame_ms:.0f} ms on {frame.info['renderer']}")
     for step, milliseconds in frame.timings.items():

@@ -1,8 +1,8 @@
-"""Three boxes between a pink and a turquoise light: shadows take the colour of the light that still arrives.
+"""Three boxes between a pink and a turquoise light: a shadow has the colour of the light that still arrives.
 
-S3HO 2012, Fig. 5 (there too, the lights are then swapped) and SSDO 2009, Fig. 3: plain occlusion darkens every crease
-to the same grey, directional occlusion leaves pink what only the pink light sees. The scene is its own mirror image in
-the plane x = 0, and so is the camera; swapping the lights therefore mirrors the picture, which is an exact test.
+For S3HO 2012, Fig. 5 (the paper also swaps the lights) and SSDO 2009, Fig. 3. Lesson: plain occlusion darkens every
+crease to the same grey; directional occlusion keeps a crease pink if only the pink light reaches it. Scene and camera
+are symmetric about the plane x = 0. Swapping the lights therefore mirrors the picture, which is an exact test.
 """
 
 from functools import cache
@@ -41,7 +41,7 @@ def _still_life() -> tuple[Instance, ...]:
 
 
 def _backdrop(width: float = 16.0, thickness: float = 0.2) -> Mesh:
-    """A photographer's sweep: floor, a quarter circle, wall; no horizon in the picture."""
+    """A photographer's backdrop: a floor that curves up into a wall, so that the picture has no horizon."""
     radius, back, front, top = 2.5, -5.5, 3.4, 5.0
     angle = np.linspace(0, np.pi / 2, 33)
     bend = np.stack([radius * (1 - np.cos(angle)), back + radius - radius * np.sin(angle)], axis=-1)
@@ -57,7 +57,7 @@ def _backdrop(width: float = 16.0, thickness: float = 0.2) -> Mesh:
 
 
 def _glow(strength: float, left: np.ndarray, right: np.ndarray) -> Environment:
-    """Dim grey, and in it the lamps' wide soft boxes: what methods that look up the environment see of them."""
+    """A dim grey environment with a wide soft box for each lamp, for methods that read the environment's light."""
     azimuth = 2 * np.pi * ((np.arange(128) + 0.5) / 128 - 0.5)
     polar = np.pi * (np.arange(64) + 0.5) / 64
     across, up = np.sin(azimuth) * np.sin(polar)[:, None], np.cos(polar)[:, None] + 0 * azimuth

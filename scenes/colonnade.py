@@ -1,8 +1,9 @@
-"""Two rows of columns; behind the nearest one, exactly in line with the camera, hides a pink one.
+"""Two rows of columns. A pink column is hidden behind the nearest column, exactly in line with the camera.
 
-SSDO 2009, Fig. 7: one view misses the hidden column, which yet shades the floor that is seen (top) and bounces pink
-onto it (bottom); peeled layers, more cameras, voxels or rays find it. `hidden=False` removes the column, which leaves
-the picture of a method that sees one layer unchanged but for its shadow: no pixel of the column itself is visible.
+For SSDO 2009, Fig. 7. Lesson: a method that reads one depth layer misses the hidden column, although the column shades
+the visible floor (Fig. 7, top) and reflects pink light onto it (bottom). Peeled layers, more cameras, voxels or rays
+find the column. `hidden=False` removes it. No pixel of the column itself is visible: with one depth layer, only its
+shadow is missing then.
 """
 
 from functools import cache
@@ -13,15 +14,15 @@ from aolab import Camera, DirectionalLight, Environment, Instance, Material, Sce
 from aolab.scene.shapes import beam, block, column, in_range, placed
 
 HEIGHT, RADIUS, SPACING, NAVE = 4.4, 0.36, 2.6, 4.4  # metres
-EYE, FRONT = np.array((-4.9, 2.3, 4.8)), np.array((-NAVE / 2, 0, 0))  # the camera, and the column that hides another
-BEHIND = 1.6  # times farther: in front, 1.6 × the shaft's least radius (0.84) covers the pink one's greatest (1.28)
+EYE, FRONT = np.array((-4.9, 2.3, 4.8)), np.array((-NAVE / 2, 0, 0))  # the camera, and the hiding column
+BEHIND = 1.6  # times the distance. The front shaft's least radius (0.84) × 1.6 covers the pink one's greatest (1.28)
 MARBLE = Material((0.78, 0.74, 0.67), name="marble")
 PAVING = Material((0.62, 0.57, 0.50), name="paving")
 PINK = Material((0.84, 0.16, 0.40), name="pink")
 
 
 def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0) -> Scene:
-    """`count` columns a row; `hidden`: whether the pink column is there; `sun_elevation` in degrees."""
+    """`count` columns per row; `hidden` adds the pink column; `sun_elevation` in degrees."""
     in_range("colonnade", count=(count, 2, 50), sun_elevation=(sun_elevation, 1, 90))
     elevation, azimuth = np.radians((sun_elevation, -125))  # from behind the camera, to its left
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
@@ -53,7 +54,7 @@ def _pink() -> Instance:
 
 
 def _entablature() -> list[tuple[float, float]]:
-    """Architrave in two steps, frieze, cornice: the section's height and half width, up one side and down the other."""
+    """The section of the entablature (architrave in two steps, frieze, cornice): height, signed half width."""
     half = [(0, 0.42), (0.22, 0.43), (0.225, 0.46), (0.42, 0.47), (0.46, 0.52), (0.50, 0.53), (0.505, 0.45)]
     half += [(0.86, 0.46), (0.94, 0.56), (0.945, 0.68), (1.08, 0.70), (1.16, 0.78), (1.20, 0.79)]
     return [(y, -z) for y, z in half] + half[::-1]

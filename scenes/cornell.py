@@ -1,9 +1,9 @@
 """The Cornell box: one lamp, two coloured walls, and daylight through the open front.
 
-The scene that every bounce of light is first looked at in. Ambient light reaches the corners and the gap between the
-blocks only in part, which is what occlusion darkens; the walls' red and green bleed in the indirect bounce (SSDO 2009,
-section 3.2), and an albedo near 1 shows over-darkened creases (ambient transfer 2009, Fig. 9). The measures are those
-of the box at Cornell, in decimetres: https://www.graphics.cornell.edu/online/box/data.html
+The usual test scene for bounced light. Lessons: ambient occlusion darkens the corners and the gap between the blocks,
+for ambient light reaches them only in part. The red and green of the walls bleed in the indirect bounce (SSDO 2009,
+section 3.2), and an albedo near 1 shows creases that are too dark (ambient transfer 2009, Fig. 9). One unit is 10 cm.
+The dimensions are those of the box at Cornell: https://www.graphics.cornell.edu/online/box/data.html
 """
 
 from functools import cache
@@ -18,7 +18,7 @@ LAMP = (1.3, 1.05)  # width, depth of the opening in the ceiling
 WHITE = Material((0.73, 0.71, 0.66), name="white")
 RED = Material((0.61, 0.05, 0.05), name="red")
 GREEN = Material((0.12, 0.43, 0.1), name="green")
-# corners x, z on the floor as published, where x grows to the left and z away from the viewer; heights
+# published corners x, z on the floor (x increases to the left, z away from the viewer), and heights
 SHORT = ((1.30, 0.65), (0.82, 2.25), (2.40, 2.72), (2.90, 1.14)), 1.65
 TALL = ((4.23, 2.47), (2.65, 2.96), (3.14, 4.56), (4.72, 4.06)), 3.30
 
@@ -31,7 +31,7 @@ def cornell(lamp: float = 1.0, daylight: float = 1.0) -> Scene:
 
 @cache
 def _room() -> tuple[Instance, ...]:
-    sunk = 0.01  # how far things reach into one another, so that no two faces share a plane
+    sunk = 0.01  # solids overlap by this depth, so that no two faces share a plane
     outer, middle, side = WIDTH + 2 * WALL, -(DEPTH + WALL) / 2, (WALL, HEIGHT + 2 * sunk, DEPTH + WALL)
     across = (WIDTH + WALL) / 2
     return (
@@ -49,7 +49,7 @@ def _room() -> tuple[Instance, ...]:
 
 
 def _ceiling(width: float, depth: float) -> Mesh:
-    """`WALL` thick, with the lamp's opening in the middle of the room."""
+    """The ceiling, `WALL` thick, with the lamp's opening in the middle of the room."""
     corners = np.array([(1, 1), (-1, 1), (-1, -1), (1, -1)]) / 2
     rings = [
         [
@@ -69,7 +69,7 @@ def _standing(corners: tuple[tuple[float, float], ...], height: float, name: str
 
 
 def _front(strength: float) -> Environment:
-    """A soft bright window in front (+z), which lights the room, before a dim backdrop."""
+    """An environment with a soft bright window in front (+z), which lights the room, and a dim rest."""
     azimuth = 2 * np.pi * ((np.arange(64) + 0.5) / 64 - 0.5)
     polar = np.pi * (np.arange(32) + 0.5) / 32
     towards_front = -np.cos(azimuth) * np.sin(polar)[:, None]

@@ -1,9 +1,9 @@
 """A city of towers under a blue sky and a low yellow sun.
 
-S3HO 2012, Fig. 6: seen with directional occlusion, the side of a tower that is away from the sun keeps a blue and
-darker shadow, and the side towards it hardly any; plain occlusion draws the same grey all around. Streets are narrow
-against the towers' height, so the radius shows: small ones darken the kerbs, large ones whole streets.
-One unit is ten metres. The same `seed` gives the same city.
+For S3HO 2012, Fig. 6. Lesson: with directional occlusion the side of a tower that faces away from the sun has a dark
+blue shadow, the side towards the sun hardly any; plain occlusion gives the same grey on all sides. The streets are
+narrow compared with the towers' height, so the effect of the radius shows: a small radius darkens the kerbs, a large
+radius whole streets. One unit is ten metres. The same `seed` gives the same city.
 """
 
 from functools import cache
@@ -14,13 +14,13 @@ from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mes
 from aolab.scene.shapes import in_range, loft, placed, ring, square
 
 BLOCK, STREET, STOREY = 2.0, 0.8, 0.34
-GLASS = (0.62, 0.68, 0.76)  # of the wall's albedo
+GLASS = (0.62, 0.68, 0.76)  # factor on the wall's albedo
 WALLS = ((0.72, 0.70, 0.66), (0.62, 0.60, 0.57), (0.70, 0.63, 0.54), (0.55, 0.57, 0.60), (0.66, 0.52, 0.44))
 ASPHALT, PAVEMENT = Material((0.30, 0.30, 0.31), name="asphalt"), Material((0.56, 0.55, 0.53), name="pavement")
 
 
 def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun_azimuth: float = 82.0) -> Scene:
-    """`sun_azimuth`: degrees from the view's direction (-z), to the right (+x)."""
+    """`sun_azimuth` and `sun_elevation` in degrees; the azimuth is measured from -z towards +x."""
     in_range("skyscrapers", seed=(seed, 0, 2**32 - 1), blocks=(blocks, 1, 32), sun_elevation=(sun_elevation, 1, 90))
     in_range("skyscrapers", sun_azimuth=(sun_azimuth, -360, 360))
     elevation, azimuth = np.radians((sun_elevation, sun_azimuth))
@@ -43,7 +43,7 @@ def _city(seed: int, blocks: int) -> tuple[Instance, ...]:
         city.append(
             Instance(_tower(1, PAVEMENT), placed(x, -0.01, z, scale=(BLOCK + 0.2, 0.06, BLOCK + 0.2)), "pavement")
         )
-        centrality = 1 - np.hypot(x, z) / side  # downtown is taller
+        centrality = 1 - np.hypot(x, z) / side  # the towers of the centre are taller
         for plot_x, plot_z, width, depth in _plots(random):
             height = float(np.clip(random.lognormal(0.7, 0.5) * 2.3 * centrality**1.8, 0.7, 6.5))
             city += _building(random, x + plot_x, z + plot_z, width, depth, height)
@@ -51,7 +51,7 @@ def _city(seed: int, blocks: int) -> tuple[Instance, ...]:
 
 
 def _plots(random: np.random.Generator) -> list[tuple[float, float, float, float]]:
-    """Centre x, z and size of the one, two or four towers of a block."""
+    """Centre x, z, width and depth of each tower of a block, which has one, two or four towers."""
     gap = 0.12
     half, whole, quarter = (BLOCK - gap) / 2, BLOCK, (BLOCK + gap) / 4
     kind = random.integers(4)
@@ -67,7 +67,7 @@ def _plots(random: np.random.Generator) -> list[tuple[float, float, float, float
 def _building(
     random: np.random.Generator, x: float, z: float, width: float, depth: float, height: float
 ) -> list[Instance]:
-    """A tower of up to three setbacks, and a plant room on its roof."""
+    """A tower of up to three stacked parts, each narrower than the part below, and a plant room on the roof."""
     material = _wall(int(random.integers(len(WALLS))))
     parts, bottom = [], 0.03
     setbacks = int(random.integers(1, 4)) if height > 2.5 else 1
@@ -89,12 +89,12 @@ def _wall(index: int) -> Material:
 
 @cache
 def _tower(storeys: int, material: Material) -> Mesh:
-    """A unit box with a ledge below each storey: placed with a scale."""
+    """A unit box, to be scaled when placed, with a parapet and a band of glass for each storey."""
     if storeys == 1:
         return loft(np.array([ring(square(4) / 2, 0), ring(square(4) / 2, 1)]), material, "slab")
     floors = np.arange(storeys)[:, None] / storeys
     sill = 0.35 / storeys
-    # each storey: a parapet, flush, and a band of glass, set back
+    # a storey is a flush parapet and a band of glass that is set back
     half = np.tile((0.5, 0.5, 0.488, 0.488), storeys)
     height = (floors + np.array((0, sill, sill, 1 / storeys))).ravel()
     rings = [ring(square(4) * size, y) for size, y in zip([*half, 0.5, 0.5], [*height, 1, 1 + sill], strict=True)]

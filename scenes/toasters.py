@@ -1,7 +1,8 @@
-"""Toasters that hop across the kitchen, and throw their toast: occlusion that changes every frame.
+"""Toasters that hop through a kitchen and throw their toast: occlusion that changes in every frame.
 
-The animated scene of HAO 2009, Fig. 8 and SSDO 2009, Fig. 4: contact shadows come and go, senders leave the view.
-`time` is in seconds and the loop closes after `LOOP`; only the transforms change, so that meshes stay on the GPU.
+For HAO 2009, Fig. 8, and SSDO 2009, Fig. 4, which show animated scenes. Lesson: contact shadows appear and disappear,
+and senders of bounced light leave the view. `time` is in seconds; the motion repeats after `LOOP` seconds. Only
+transforms change with the time, so that meshes stay on the GPU.
 """
 
 from functools import cache
@@ -11,7 +12,7 @@ import numpy as np
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, Scene
 from aolab.scene.shapes import block, circle, in_range, lathe, loft, placed, ring, rounded
 
-LOOP, HOPS = 4.0, 8  # seconds, and hops in them
+LOOP, HOPS = 4.0, 8  # seconds, and hops per loop
 ENAMEL = ((0.80, 0.22, 0.16), (0.16, 0.52, 0.50), (0.82, 0.58, 0.16), (0.78, 0.74, 0.66), (0.24, 0.36, 0.62))
 CHROME, BAKELITE = Material((0.62, 0.63, 0.65), name="chrome"), Material((0.05, 0.05, 0.055), name="bakelite")
 CRUST, CRUMB = Material((0.42, 0.20, 0.06), name="crust"), Material((0.80, 0.60, 0.32), name="crumb")
@@ -20,7 +21,7 @@ WALL = Material((0.62, 0.50, 0.36), name="wall")
 
 
 def toasters(time: float = 0.62, count: int = 5) -> Scene:
-    """`time` in seconds, any; `count` toasters."""
+    """`count` toasters at any `time`, in seconds."""
     in_range("toasters", time=(time, -1e6, 1e6), count=(count, 1, 10))
     sun = DirectionalLight((0.55, -1.0, -0.5), (3.0, 2.5, 1.9))
     kitchen = Environment.sky((0.34, 0.40, 0.50), (0.40, 0.40, 0.41), (0.20, 0.17, 0.14))
@@ -30,13 +31,13 @@ def toasters(time: float = 0.62, count: int = 5) -> Scene:
 
 
 def _toaster(number: int, count: int, time: float) -> list[Instance]:
-    """Hops around a ring in its own rhythm; squashed when it lands. The toast jumps in every fourth hop."""
+    """A toaster that hops along a circle, with its own phase. It squashes on landing. Every fourth hop throws toast."""
     beat = HOPS * (time / LOOP + 0.37 * number) % HOPS
     share = beat % 1
     flight = np.sin(np.pi * share) ** 2
-    travel = np.floor(beat) + share - np.sin(2 * np.pi * share) / (2 * np.pi)  # it stands still when it touches ground
+    travel = np.floor(beat) + share - np.sin(2 * np.pi * share) / (2 * np.pi)  # the speed is 0 on the ground
     angle = 2 * np.pi * (travel / HOPS - 0.37 * number + number / count)
-    radius = max(2.1, 1.75 / (2 * np.pi / count - 0.25))  # 1.56 long, and at most a quarter radian out of step
+    radius = max(2.1, 1.75 / (2 * np.pi / count - 0.25))  # toasters are 1.56 long, and up to 0.25 rad out of place
     place = placed(radius * np.sin(angle), 0.5 * flight - 0.01, radius * np.cos(angle), turn=np.degrees(angle))
     stretch = 1 - 0.14 * (1 - flight) ** 3
     body = place @ placed(
@@ -52,7 +53,7 @@ def _toaster(number: int, count: int, time: float) -> list[Instance]:
 
 @cache
 def _body(color: int) -> list[tuple[Mesh, np.ndarray]]:
-    """The shell with its opening, a bar that makes two slots of it, skirt, feet and dial."""
+    """The shell with its opening, the bar that divides the opening into two slots, the skirt, the feet and the dial."""
     outside = [(1.52, 0.80, 0.14), (1.56, 0.84, 0.20), (1.56, 0.84, 0.80)]
     outside += [(1.56 - 0.2 * (1 - np.cos(a)), 0.84 - 0.2 * (1 - np.cos(a)), 0.80 + 0.15 * np.sin(a)) for a in ROUND]
     inside = [(1.16, 0.56, 0.95), (1.14, 0.54, 0.93), (1.14, 0.54, 0.2)]
@@ -81,7 +82,7 @@ def _bar() -> Mesh:
 
 @cache
 def _dial() -> Mesh:
-    """Its axis is z."""
+    """The dial; its axis is z."""
     rings = [ring(circle(24) * radius, y)[:, (0, 2, 1)] for radius, y in ((0.13, 0), (0.13, 0.05), (0.11, 0.07))]
     return loft(np.array(rings), CHROME, "dial")
 
@@ -93,7 +94,7 @@ def _lever() -> Mesh:
 
 @cache
 def _slice(thickness: float, inset: float, material: Material) -> Mesh:
-    """A slice of bread that stands on y = 0, in the plane z = 0."""
+    """A slice of bread standing on y = 0, in the plane z = 0."""
     rings = []
     for z, inner in ((-0.5, 0.02), (-0.3, 0.0), (0.3, 0.0), (0.5, 0.02)):
         x, y = (rounded(1.0, 0.86, 0.24, 32) * (1 - 2 * inset - inner)).T
@@ -103,7 +104,7 @@ def _slice(thickness: float, inset: float, material: Material) -> Mesh:
 
 @cache
 def _kitchen(side: int = 18) -> tuple[Instance, ...]:
-    """Tiles with open joints, and a wall at the back."""
+    """The floor, tiles with open joints, and the wall at the back."""
     tiles = [block((0.985, 0.1, 0.985), material, "tile") for material in TILES]
     middle = (side - 1) / 2
     floor = [Instance(tiles[(i + j) % 2], placed(i - middle, -0.1, j - middle)) for i, j in np.ndindex(side, side)]

@@ -1,1 +1,1 @@
-"""Tools for Jupyter: glyphs of a pixel (`reading`, drawn as `lobes`), and a picker that reads them by a click."""
+"""Tools for Jupyter: the glyph of a pixel (`reading` computes it, `lobes` draws it), and a picker for a click."""

@@ -1,6 +1,6 @@
-"""What one pixel knows of light: how it lets light in, and what light comes, as functions of direction.
+"""The transfer function and the incoming light of one pixel, as functions of direction.
 
-Herholz et al. 2012, Screen Space Spherical Harmonic Occlusion, sections 2.2 and 2.3, Fig. 2 to 5.
+Herholz et al. 2012, "Screen Space Spherical Harmonic Occlusion", sections 2.2 and 2.3, Fig. 2 to 5.
 """
 
 from dataclasses import dataclass
@@ -21,14 +21,15 @@ SIZE = (240, 240)
 
 @dataclass(frozen=True, eq=False)
 class Glyph:
-    """Occlusion and light at one pixel. Coefficients are those of `aolab.maths.harmonics`, in world space.
+    """Occlusion and light at one pixel. Coefficients use the basis of `aolab.maths.harmonics`, in world space.
 
-    `pixel`: (column, row), from the top left. `position` (3,), scene units, and `normal` (3,), unit: the surface there.
+    `pixel`: (column, row), counted from the top left.
+    `position` (3,), scene units, and `normal` (3,), a unit vector: the surface at the pixel.
     `coefficients` (16,): c_i = ∫ V cosθ y_i dω, visibility times cosine (Eq. 2).
-    `light` (16, 3): c_Lin, the environment's radiance and each light's windowed lobe (Eq. 4), RGB. Shadow maps are left
-    out: they know what is far away, and a glyph shows what the pixel's own coefficients do with the light.
-    `bounce` (16, 3): c_SSGI, what the occluders around reflect (Eq. 5), RGB; None where the frame has no such bounce.
-    `camera`: from where it is seen. A notebook shows `picture()`.
+    `light` (16, 3): c_Lin, RGB: the environment's radiance plus the windowed lobe of each light (Eq. 4). Shadow maps
+    are left out, so that the glyph shows the effect of the pixel's own coefficients on the light.
+    `bounce` (16, 3): c_SSGI, RGB: the light that nearby occluders reflect (Eq. 5); None if the frame has no bounce.
+    `camera`: the camera of the frame; pictures show the glyph from its direction. A notebook shows `picture()`.
     """
 
     pixel: tuple[int, int]
@@ -41,44 +42,46 @@ class Glyph:
 
     @property
     def visibility(self) -> float:
-        """The share of light that an even sky leaves: (1/π) ∫ V cosθ dω, by the first coefficient, y_0 = 1/√4π."""
+        """The visibility (1/π) ∫ V cosθ dω, computed from the first coefficient; y_0 = 1/√4π."""
         return float(2 / np.sqrt(np.pi) * self.coefficients[0])
 
     @property
     def transfer(self) -> np.ndarray:
-        """(16, 3): c_S3HOGI = c_S3HO + c_SSGI, from distant light to irradiance, red, green and blue."""
+        """(16, 3): c_S3HOGI = c_S3HO + c_SSGI, the factors from distant light to irradiance, RGB."""
         direct = np.repeat(self.coefficients[:, None], 3, axis=1)
         return direct if self.bounce is None else direct + self.bounce
 
     @property
     def irradiance(self) -> np.ndarray:
-        """(3,): E = c_Lin · c (Eq. 3), RGB, the bounce included. Not clamped: four bands can ring below 0."""
+        """(3,): E = c_Lin · c (Eq. 3), RGB, including the bounce. Not clamped: four bands can ring below 0."""
         return (self.light * self.transfer).sum(axis=0)
 
     @cached_property
     def lobe(self) -> Lobe:
-        """The transfer function in directions all around, and the mesh that `occlusion_picture` draws of it."""
+        """The transfer function sampled over all directions, and the mesh that `occlusion_picture` draws."""
         return pictures.lobe(self.coefficients if self.bounce is None else self.transfer)
 
     def occlusion_picture(self, size: Size = SIZE) -> np.ndarray:
-        """(height, width, 3) uint8: the transfer function, turned as the image shows the surface (Fig. 2, 4).
+        """The transfer function, seen from the frame's camera (Fig. 2, 4): (height, width, 3) uint8.
 
-        The distance from the centre is the value in that direction, red where positive, blue where four bands ring
-        below 0; with a bounce, the colour is that of the value. The pin is the normal, the ring lies in the tangent
-        plane and is 1 in radius: all glyphs have one scale, unless a strong bounce asks for a smaller one.
+        The distance from the centre is the absolute value in that direction: red if the value is positive, blue if it
+        is negative (four bands ring). With a bounce, the lobe has the RGB colour of the values. The pin is the normal;
+        the ring lies in the tangent plane and has radius 1. All glyphs have the same scale; it is reduced only if a
+        strong bounce would leave the picture.
         """
         return pictures.draw_lobe(self.lobe, self.normal, self.camera, size)
 
     def light_picture(self, size: Size = SIZE) -> np.ndarray:
-        """(height, width, 3) uint8: a sphere that has in each direction the colour of the light from there (Fig. 3, 5).
+        """The incoming light on a sphere (Fig. 3, 5): (height, width, 3) uint8.
 
-        It shows the half that the camera looks at. The brightest colour of the whole sphere is full: `brightest`.
+        Each point of the sphere has the colour of the light from its direction. The camera sees half of the sphere.
+        Colours are divided by the largest radiance of the whole sphere, `brightest`.
         """
         return pictures.draw_light(self.light, self.camera, size)
 
     @property
     def brightest(self) -> float:
-        """The largest radiance that comes from any direction, in any of red, green and blue."""
+        """The largest incoming radiance over all directions and over red, green and blue."""
         return pictures.brightest(self.light)
 
     def picture(self, size: Size = SIZE) -> Image.Image:

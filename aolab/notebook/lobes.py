@@ -1,4 +1,4 @@
-"""Functions of direction as pictures: lobes and spheres, drawn by a small lab of their own."""
+"""Pictures of functions of direction, as lobes and as spheres. A separate small lab draws them."""
 
 from dataclasses import dataclass
 from functools import cache
@@ -17,8 +17,8 @@ from ..scene.mesh import Material, Mesh
 from ..scene.scene import Instance, Scene
 
 SUBDIVISIONS = 5  # of the icosahedron: 10242 directions, 2° apart; the fourth band's waves are 120° long
-EXTENT = 1.25  # half the picture's height; the ring and the sphere have radius 1, an open surface's lobe is 1.06 long
-FOV = 16.0  # degrees: a long lens, so that the size of a lobe hardly depends on where it points
+EXTENT = 1.25  # half the picture's height; ring and sphere have radius 1, the lobe of an open surface has length 1.06
+FOV = 16.0  # degrees: a long lens, so that a lobe's size hardly depends on its direction
 SUPERSAMPLING = 2
 PAPER = np.array((236, 236, 233), np.uint8)  # sRGB, light grey
 RED, BLUE, GRAY = (0.62, 0.07, 0.05), (0.06, 0.2, 0.62), (0.3, 0.3, 0.3)  # linear RGB
@@ -29,7 +29,8 @@ WHITE = Material((1.0, 1.0, 1.0))
 class Lobe:
     """A function of direction: `values` (n,), or (n, 3) for RGB, at unit world-space `directions` (n, 3).
 
-    `mesh`: at each direction, one vertex |value| away from the origin (of RGB the largest), coloured by its value.
+    `mesh` has one vertex per direction, at the distance |value| from the origin (RGB: the largest of the three). The
+    vertex colour shows the value.
     """
 
     directions: np.ndarray
@@ -43,14 +44,14 @@ def _sphere() -> trimesh.Trimesh:
 
 
 def _mesh(shape: trimesh.Trimesh, colors: np.ndarray | tuple[float, float, float], name: str) -> Mesh:
-    """A smooth mesh with linear RGB `colors`, one for all or one a vertex."""
+    """A smooth mesh with linear RGB `colors`: one colour (3,), or a colour per vertex (n, 3)."""
     rgba = np.ones((len(shape.vertices), 4))
     rgba[:, :3] = colors
     return Mesh(shape.vertices, shape.faces, normals=shape.vertex_normals, colors=rgba, material=WHITE, name=name)
 
 
 def lobe(coefficients: np.ndarray) -> Lobe:
-    """The function with `coefficients` (16,), or (16, 3) for RGB."""
+    """The lobe of the function with `coefficients` (16,), or (16, 3) for RGB."""
     directions = np.asarray(_sphere().vertices)
     values = evaluate(coefficients, directions)
     if values.ndim == 1:
@@ -59,7 +60,7 @@ def lobe(coefficients: np.ndarray) -> Lobe:
         size = np.abs(values).max(axis=1)
         colors = np.clip(values, 0, None) / np.maximum(size, 1e-9)[:, None]
         colors = np.where(values.max(axis=1, keepdims=True) > 0, colors, BLUE)
-    # a length of 0 would leave triangles without area
+    # triangles at a length of 0 would have no area
     shape = trimesh.Trimesh(directions * np.maximum(size, 1e-3)[:, None], _sphere().faces, process=False)
     return Lobe(directions, values, _mesh(shape, colors, "lobe"))
 
@@ -70,29 +71,29 @@ def brightest(light: np.ndarray) -> float:
 
 
 def draw_lobe(lobe: Lobe, normal: np.ndarray, camera: Camera, size: Size) -> np.ndarray:
-    """(height, width, 3) uint8: the lobe, softly lit, over a ring in the plane across `normal` and a pin along it."""
+    """The lobe under soft light, with a ring in the tangent plane and a pin along `normal`: (H, W, 3) uint8."""
     turned = trimesh.geometry.align_vectors((0, 0, 1), normal)
     ring = trimesh.creation.torus(1.0, 0.012).apply_transform(turned)
     pin = trimesh.creation.cylinder(0.012, segment=np.outer((0, 1.2), normal))
-    # over the viewer's left shoulder
+    # the light comes over the viewer's left shoulder
     sun = DirectionalLight(tuple(np.array((0.5, -0.8, -0.7)) @ camera.view_from_world[:3, :3]), (2.2, 2.2, 2.2), False)
     meshes = (lobe.mesh, _mesh(ring, GRAY, "tangent plane"), _mesh(pin, GRAY, "normal"))
-    extent = max(EXTENT, 1.1 * float(np.abs(lobe.values).max()))  # a strong bounce must fit
+    extent = max(EXTENT, 1.1 * float(np.abs(lobe.values).max()))  # a strong bounce must fit into the picture
     return _drawn(meshes, Environment.constant(0.35), (sun,), camera, size, extent)
 
 
 def draw_light(light: np.ndarray, camera: Camera, size: Size) -> np.ndarray:
-    """(height, width, 3) uint8: a sphere in the colours of the light (16, 3), which are not lit themselves."""
+    """A sphere with the colours of the light, coefficients (16, 3), without shading: (height, width, 3) uint8."""
     shape = _sphere()
     radiance = np.clip(evaluate(light, np.asarray(shape.vertices)), 0, None)
     colors = radiance / max(radiance.max(), 1e-9)
-    # under a constant radiance of 1, what a surface reflects is its own colour
+    # under a constant radiance of 1, a surface reflects its own albedo
     return _drawn((_mesh(shape, colors, "light"),), Environment.constant(1.0), (), camera, size)
 
 
 @cache
 def _lab() -> Lab:
-    """One of its own: the small pictures must not make the shared lab forget the textures of large ones."""
+    """A separate lab, so that small pictures do not push the textures of large frames out of the shared lab."""
     return Lab((480, 480))
 
 
@@ -104,7 +105,7 @@ def _drawn(
     size: Size,
     extent: float = EXTENT,
 ) -> np.ndarray:
-    """(height, width, 3) uint8: meshes around the origin, turned to the viewer as the camera turns its scene."""
+    """Meshes around the origin, seen from the direction of `camera`: (height, width, 3) uint8."""
     width, height = size
     backward, up = camera.view_from_world[2, :3], camera.view_from_world[1, :3]
     half_height = extent * max(1, height / width)

@@ -1,4 +1,4 @@
-"""Click a pixel in a notebook and see its glyph."""
+"""A widget for notebooks: a click on a pixel shows its glyph."""
 
 from typing import TYPE_CHECKING
 
@@ -10,11 +10,11 @@ if TYPE_CHECKING:
 
 
 def glyph_picker(frame: Frame) -> "GlyphPicker":
-    """A widget that shows `frame.image` and, beside it, the glyph of the pixel that is clicked (`aolab.glyph`).
+    """A widget that shows `frame.image` and, beside it, the glyph of the clicked pixel (`aolab.glyph`).
 
-    With the image in focus, the arrow keys move by one pixel, with Shift by ten. `picker.pixel` is the (column, row),
-    to read or to set, and `picker.glyph` its `Glyph`, or None. Raises `ParameterError` without anywidget, and for a
-    frame that has no image or no spherical harmonics.
+    If the image has the focus, the arrow keys move the pixel by one, with Shift by ten. `picker.pixel` is the
+    (column, row) and can be set. `picker.glyph` is the pixel's `Glyph`, or None. Raises `ParameterError` if anywidget
+    is not installed, or if the frame has no image or no spherical harmonics.
     """
     try:
         from .widget import GlyphPicker

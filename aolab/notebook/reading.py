@@ -1,4 +1,4 @@
-"""`aolab.glyph`: a pixel's glyph, read off a frame and off the light of its scene."""
+"""`aolab.glyph`: the glyph of a pixel, computed from a frame's buffers and from the light of its scene."""
 
 import operator
 from collections.abc import Iterator, Mapping
@@ -23,17 +23,17 @@ BOUNCE = [f"bounce{i}" for i in range(7)]
 
 
 def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
-    """Occlusion and light at `pixel` (column, row) of a frame's image, counted from its top left.
+    """Occlusion and light at `pixel` (column, row) of a frame's image, counted from the top left.
 
-    For frames with spherical harmonics: `aolab.render(scene, "s3ho")`, also relit, and
-    `aolab.reference(scene, buffers=("sh0", "sh1", "sh2", "sh3"))`. Raises `ParameterError` for another frame, and for a
-    pixel that is outside or shows the background.
+    The frame needs spherical harmonics: `aolab.render(scene, "s3ho")`, relit or not, or
+    `aolab.reference(scene, buffers=("sh0", "sh1", "sh2", "sh3"))`. Raises `ParameterError` for any other frame, and for
+    a pixel outside the image or in the background.
     """
     scene = lit_scene(frame)
     column, row = _inside(pixel, frame.size)
     here = Frame(_Texels(frame, column, row), {}, frame.info, derived=frame.derived)
     if not here.mask[0, 0]:
-        raise ParameterError(f"glyph: pixel ({column}, {row}) shows the background, no surface; frame.mask tells where")
+        raise ParameterError(f"glyph: pixel ({column}, {row}) is in the background; frame.mask is True at surfaces")
     position = _position(frame.camera, frame.size, (column, row), float(here["viewZ"][0, 0]))
     return Glyph(
         pixel=(column, row),
@@ -47,7 +47,7 @@ def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
 
 
 class _Texels(Mapping[str, np.ndarray]):
-    """One pixel of each texture: a frame of these derives its buffers, `sh0` to `sh3`, for that pixel alone."""
+    """One pixel of each texture. A frame made of them derives `sh0` to `sh3` for this pixel only."""
 
     def __init__(self, frame: Frame, column: int, row: int) -> None:
         self._frame, self._pixel = frame, (slice(row, row + 1), slice(column, column + 1))
@@ -63,20 +63,20 @@ class _Texels(Mapping[str, np.ndarray]):
 
 
 def lit_scene(frame: Frame) -> Scene:
-    """The scene of a frame that has all that glyphs take. Raises `ParameterError` for another."""
+    """The frame's scene. Raises `ParameterError` if the frame lacks the scene or a buffer that glyphs need."""
     if missing := [name for name in HARMONICS if name not in frame.buffers]:
         modules = ", ".join(name for name, module in MODULES.items() if "sh0" in module.derived)
         raise ParameterError(
-            f"glyph: this frame, of {frame.info.get('module')}, has no {', '.join(missing)}; those come from the "
-            f"modules {modules}, and from aolab.reference(scene, buffers={tuple(HARMONICS)})"
+            f"glyph: this frame, of {frame.info.get('module')}, has no {', '.join(missing)}; they are buffers of the "
+            f"modules {modules}, and of aolab.reference(scene, buffers={tuple(HARMONICS)})"
         )
     if frame.scene is None:
-        raise ParameterError("glyph: this frame does not know its scene, and so not its light; render it with a lab")
+        raise ParameterError("glyph: this frame has no scene, so its light is unknown; render the frame with a lab")
     return frame.scene
 
 
 def _inside(pixel: tuple[int, int], size: Size) -> tuple[int, int]:
-    """(column, row) as whole numbers of Python's, NumPy's accepted."""
+    """`pixel` as Python integers (column, row); NumPy integers are accepted. Raises `ParameterError` if outside."""
     width, height = size
     try:
         column, row = map(operator.index, pixel)
@@ -92,8 +92,8 @@ def _inside(pixel: tuple[int, int], size: Size) -> tuple[int, int]:
 
 
 def _position(camera: Camera, size: Size, pixel: tuple[int, int], view_z: float) -> np.ndarray:
-    """(3,) world space: `view_z` along the ray through the centre of `pixel` (column, row)."""
-    view = View(camera, size, np.zeros((2, 3)))  # bounds make clip planes, and there are none here
+    """The world-space point (3,) at depth `view_z` on the ray through the centre of `pixel` (column, row)."""
+    view = View(camera, size, np.zeros((2, 3)))  # the bounds only determine clip planes, which are not used here
     ray = pixel_rays(view, np.array([pixel[1] * size[0] + pixel[0]]))[0]
     world_from_view = np.linalg.inv(camera.view_from_world)
     return world_from_view[:3, :3] @ (ray * -view_z) + world_from_view[:3, 3]
@@ -101,11 +101,11 @@ def _position(camera: Camera, size: Size, pixel: tuple[int, int], view_z: float)
 
 def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:
     """(16, 3): c_Lin at world-space `position` (3,), Eq. 4, as in glsl/s3ho.direct.frag and s3ho.ambient.frag."""
-    assert scene.environment is not None  # Scene fills it in
+    assert scene.environment is not None  # Scene sets it
     total = scene.environment.radiance_sh.copy()
     lobe = light_lobe(hanning(window))
     for light in scene.lights:
-        # relative to `position`, which is then the origin: float32 is finest there
+        # relative to `position` as the origin, where float32 is most precise
         towards, _, share = towards_light(light, np.zeros((1, 3), np.float32), position)
         color = light.irradiance if isinstance(light, DirectionalLight) else light.intensity
         total += np.outer(zonal_lobe(lobe, towards[0]), float(share[0]) * np.asarray(color))
@@ -113,7 +113,7 @@ def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:
 
 
 def _bounce(here: Frame) -> np.ndarray:
-    """(16, 3): c_SSGI, world space, from the textures as glsl/s3ho.senders.frag lays them out: nine, then zeros."""
+    """c_SSGI (16, 3), world space: nine coefficients, then zeros. glsl/s3ho.senders.frag defines the layout."""
     texels = np.concatenate([here[name][0] for name in BOUNCE])  # (7, 4)
     seen = np.zeros((16, 3))
     seen[:7], seen[7], seen[8] = texels[:, :3], texels[:3, 3], texels[3:6, 3]

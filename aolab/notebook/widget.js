@@ -1,8 +1,9 @@
-// The widget of aolab.glyph_picker, the half in the browser (anywidget): shows an image, reports the pixel that is
-// clicked, and shows what Python answers. Pixels are (column, row), from the top left; the image may be scaled.
+// The browser side of the widget aolab.glyph_picker (anywidget). It shows an image, sends the clicked pixel to Python,
+// and shows the picture and message that Python sets. Pixels are (column, row), from the top left; the image may be
+// scaled.
 
 const STEPS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
-const STRIDE = 10; // pixels that an arrow key moves with Shift
+const STRIDE = 10; // pixels per arrow key with Shift
 
 function make(tag, style, attributes = {}) {
   const element = Object.assign(document.createElement(tag), attributes);
@@ -27,7 +28,7 @@ function render({ model, el }) {
   stage.append(image, marker);
   const picture = make("img", "max-width: 100%");
   const message = make("div", "max-width: 36em; padding: 4px 0");
-  message.setAttribute("role", "status"); // read aloud when it changes
+  message.setAttribute("role", "status"); // screen readers read it when it changes
   const answer = make("div", "max-width: 100%");
   answer.append(picture, message);
   const both = make("div", "display: flex; flex-wrap: wrap; gap: 8px");
@@ -41,7 +42,7 @@ function render({ model, el }) {
   }
 
   image.addEventListener("click", (event) => {
-    const shown = image.getBoundingClientRect(); // what the page's layout and zoom made of it
+    const shown = image.getBoundingClientRect(); // the size on the page, after layout and zoom
     choose(
       ((event.clientX - shown.left) / shown.width) * image.naturalWidth,
       ((event.clientY - shown.top) / shown.height) * image.naturalHeight,
@@ -51,8 +52,8 @@ function render({ model, el }) {
   stage.addEventListener("keydown", (event) => {
     const step = STEPS[event.key];
     if (!step || event.altKey || event.ctrlKey || event.metaKey) return;
-    event.preventDefault(); // the page must not scroll,
-    event.stopPropagation(); // nor the notebook go to another cell
+    event.preventDefault(); // the page must not scroll
+    event.stopPropagation(); // the notebook must not select another cell
     const [column, row] = model.get("pixel") ?? [image.naturalWidth / 2, image.naturalHeight / 2];
     const stride = event.shiftKey ? STRIDE : 1;
     choose(column + stride * step[0], row + stride * step[1]);

@@ -1,4 +1,4 @@
-"""The widget of `aolab.glyph_picker`: the half in Python. The other half, in the browser, is widget.js."""
+"""The Python side of the widget `aolab.glyph_picker`. The browser side is widget.js."""
 
 import asyncio
 import threading
@@ -16,7 +16,7 @@ HINT = "Click a pixel, or press an arrow key."
 
 
 class GlyphPicker(anywidget.AnyWidget):
-    """An image to click in. The browser sets `pixel`; Python answers with `picture`, a PNG or empty, and `message`."""
+    """A clickable image. The browser sets `pixel`; Python sets `picture` (PNG bytes, or empty) and `message`."""
 
     _esm = Path(__file__).with_name("widget.js")
 
@@ -26,7 +26,7 @@ class GlyphPicker(anywidget.AnyWidget):
     message = traitlets.Unicode(HINT).tag(sync=True)
 
     def __init__(self, frame: Frame) -> None:
-        lit_scene(frame)  # what no pixel could show is refused at once
+        lit_scene(frame)  # raises at once if no pixel of this frame can have a glyph
         super().__init__(image=frame._repr_png_())
         self.frame = frame
         self.glyph: Glyph | None = None
@@ -38,7 +38,7 @@ class GlyphPicker(anywidget.AnyWidget):
         self.observe(self._picked, names="pixel")
 
     def _picked(self, _: object) -> None:
-        """JupyterLab may deliver a click in a thread of its own; OpenGL answers only in the one that rendered."""
+        """JupyterLab may call this in another thread, but the OpenGL context belongs to the thread that rendered."""
         if self._loop is None or threading.get_ident() == self._thread:
             self._show()
         else:
@@ -50,12 +50,12 @@ class GlyphPicker(anywidget.AnyWidget):
             message = HINT if self.glyph is None else _described(self.glyph)
         except Error as error:
             self.glyph, message = None, str(error)
-        with self.hold_sync():  # a picture and its description arrive together
+        with self.hold_sync():  # the browser receives picture and description together
             self.picture = b"" if self.glyph is None else self.glyph._repr_png_()
             self.message = message
 
 
 def _described(glyph: Glyph) -> str:
-    """For those who do not see the picture."""
+    """The picture in words, for readers who cannot see it."""
     red, green, blue = glyph.irradiance
     return f"Pixel {glyph.pixel}: {glyph.visibility:.0%} open, irradiance {red:.2f}, {green:.2f}, {blue:.2f}."

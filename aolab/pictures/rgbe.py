@@ -95,7 +95,7 @@ def _flat_or_old_runs(data: bytes, start: int, height: int, width: int) -> np.nd
 def radiance(rgbe: np.ndarray) -> np.ndarray:
     """Radiance (..., 3) float32 from `rgbe` (..., 4) uint8: mantissa / 256 · 2^(exponent - 128).
 
-    An exponent of 0 gives 0. Like most readers, this one does not add Ward's half step to the mantissa: 0 stays 0 and 1 stays 1.
+    An exponent of 0 gives 0. Ward's half step on the mantissa is left out, as in most readers: 0 stays 0, 1 stays 1.
     """
     scale = np.ldexp(np.float32(1), np.arange(256) - 136).astype(np.float32)
     scale[0] = 0

@@ -46,7 +46,7 @@ def test_the_background_says_why_there_is_no_glyph(frame):
     picker = aolab.glyph_picker(frame)
     picker.pixel = GROUND
     picker.pixel = SKY
-    assert "pixel (10, 2) shows the background" in picker.message
+    assert "pixel (10, 2) is in the background" in picker.message
     assert (picker.picture, picker.glyph) == (b"", None)
     picker.pixel = GROUND
     assert picker.picture
