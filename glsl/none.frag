@@ -1,5 +1,6 @@
-// No occlusion: every direction is open.
-// Output: visibility = 1.
+// No occlusion: every direction is open. The baseline for all other methods.
+// Inputs:  none.
+// Output:  visibility = 1.
 
 out float visibility;
 

@@ -1,8 +1,10 @@
-// SSAO over the hemisphere: the share of cosine-distributed directions in which nothing blocks within the radius.
-// The hemisphere form of Filion and McNaughton 2008 (StarCraft II); here each direction is marched, so that more steps
-// converge to a ray.
+// SSAO over the hemisphere: the share of directions that are open within the radius.
+// Filion and McNaughton 2008, "Effects & Techniques" (StarCraft II).
+// Differences from the paper: directions have the density cosθ/π and count equally. Each direction is marched, so that
+// more steps converge to a ray.
 //
-// Inputs:  viewZ, viewNormal (view space). Output: visibility in [0, 1], 1 = open; a plane gives exactly 1.
+// Inputs:  viewZ (scene units, negative); viewNormal (view space, unit length).
+// Output:  visibility in [0, 1], 1 = open. A plane gives exactly 1.
 
 #include "lib/march.glsl"
 
@@ -19,6 +21,6 @@ void main() {
     for (int i = 0; i < directions; ++i) {
         blockedDirections += isWayBlocked(receiver, i) ? 1.0 : 0.0;
     }
-    // (1/π) ∫ V cosθ dω, over a cosine density: the mean of V
+    // (1/π) ∫ V cosθ dω is the mean of V over directions with a cosine density
     visibility = pow(1.0 - blockedDirections / float(directions), power);
 }

@@ -1,17 +1,21 @@
-// SSBN, the environment's light: as much as is open of what a cone around the bent normal sees.
-// Klehm, Ritschel, Eisemann and Seidel 2011: the cone's width follows from the bent normal's length. Here it is exact for a
-// surface that is open in just such a cone: there, with c the cosine of its half angle, the mean direction's length is
-//   ∫ cos²θ dω / ∫ cosθ dω = 2/3 (1 + c + c²) / (1 + c)  over the density cosθ/π,
-//   ∫ cosθ dω / ∫ dω = 1/2 (1 + c)                       if directions are uniform.
-// Where all is open c is 0, and E is exactly the environment's irradiance.
-// Inputs: viewNormal, albedo, blocked_direction; cone_environment, the mean radiance in cones (aolab/scene/cones.py).
-// Output: ambient, linear RGB radiance: albedo × visibility × mean radiance.
+// SSBN, ambient light: the mean radiance of the environment in a cone around the bent normal, times the visibility.
+// Klehm, Ritschel, Eisemann and Seidel 2011, "Bent Normals and Cones in Screen-space": the length of the bent normal
+// determines the width of the cone.
+// Difference from the paper: the width is exact for a surface that is open in just a cone around its normal. Let c be
+// the cosine of the cone's half angle. The length of the mean open direction is
+//   ∫ cos²θ dω / ∫ cosθ dω = 2/3 (1 + c + c²) / (1 + c)  for directions with the density cosθ/π,
+//   ∫ cosθ dω / ∫ dω = 1/2 (1 + c)                       for uniform directions.
+// An open surface has c = 0 and receives exactly the environment's irradiance.
+//
+// Inputs:  viewNormal (view space); albedo (linear RGB, alpha 0 in the background); blocked_direction (ssbn.frag);
+//          cone_environment: mean radiance in cones, linear RGB (aolab/scene/cones.py).
+// Output:  ambient, linear RGB radiance: albedo × visibility × mean radiance.
 
 #include "lib/octahedral.glsl"
 
 const bool uniform_weights;
-const int cone_slices;     // of the table, from the narrowest cone to the hemisphere
-const int cone_texels;     // of a slice's side, a border of one around it
+const int cone_slices;     // slices of the table, from the narrowest cone to the hemisphere
+const int cone_texels;     // width of a slice, without its border of one texel
 
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
@@ -21,7 +25,7 @@ uniform mat4 world_from_view;
 
 out vec4 ambient;
 
-// The mean radiance in the cone of half angle `angle`, a share of the right angle, around `worldDir`.
+// The mean radiance in the cone around `worldDir`; `angle`: its half angle as a share of a right angle.
 vec3 radianceInCone(vec3 worldDir, float angle) {
     float slice = clamp(angle * float(cone_slices) - 1.0, 0.0, float(cone_slices - 1));
     float lower = min(floor(slice), float(cone_slices - 2));
@@ -40,14 +44,14 @@ void main() {
 
     vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
     vec4 blocked = texelFetch(blocked_direction, pixel, 0);
-    // ∫ V cosθ dω is there both times: of uniform directions it is the part of b along the normal
+    // visibility, (1/π) ∫ V cosθ dω; for uniform directions it follows from the component of b along the normal
     float visibility = clamp(1.0 - (uniform_weights ? 2.0 * dot(blocked.xyz, worldNormal) : blocked.w), 0.0, 1.0);
     vec3 bent = (uniform_weights ? 1.0 / 2.0 : 2.0 / 3.0) * worldNormal - blocked.xyz;
     float size = length(bent) / max(1.0 - blocked.w, 1e-4);
     float k = clamp(1.5 * size - 1.0, 0.0, 0.5);  // c² - k c - k = 0
     float cosine = uniform_weights ? clamp(2.0 * size - 1.0, 0.0, 1.0) : 0.5 * (k + sqrt(k * k + 4.0 * k));
     float angle = acos(min(cosine, 1.0)) * (2.0 / 3.14159265358979);
-    // nothing open, nothing bent: any direction will do
+    // nothing open: b has no direction, and visibility is 0 in any direction
     vec3 direction = dot(bent, bent) > 1e-12 ? bent : worldNormal;
     ambient = vec4(surfaceAlbedo.rgb * visibility * radianceInCone(direction, angle), 1.0);
 }

@@ -1,5 +1,6 @@
-// The cheapest loop with as many taps: the kernel laid flat around the pixel, unrotated, at the radius' size on the
-// screen. It shows what finding SSAO's texels costs, against fetching them.
+// Benchmark: the cheapest loop with as many taps as SSAO. The kernel lies flat around the pixel, not rotated, scaled to
+// the radius on the screen. `aolab bench` prints the ratio to ssao.frag: the cost of finding and testing SSAO's texels.
+// Input: viewZ (scene units, negative). Output: sum, without meaning.
 
 const int directions;
 const int steps;

@@ -1,5 +1,6 @@
-// The least that SSAO's taps can cost: the same texels in the same order, fetched and added up. No occluder test.
-// What ssao.frag takes beyond this is what its answer costs; `aolab bench` prints the ratio.
+// Benchmark: the least cost of SSAO's taps. The shader fetches the same texels in the same order as ssao.frag and adds
+// them up, without the occluder test. `aolab bench` prints the ratio to ssao.frag: the cost of the test.
+// Inputs: viewZ (scene units, negative), viewNormal (view space). Output: sum, without meaning.
 
 #include "lib/space.glsl"
 #include "lib/sampling.glsl"

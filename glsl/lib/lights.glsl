@@ -1,9 +1,9 @@
-// The scene's lights and their shadow maps, by number: 0 to lights - 1.
+// The scene's lights and their shadow maps, by index i from 0 to lights - 1.
 
 #include "lib/light.glsl"
 
 const int lights;
-const int light_slots;   // the same, but at least 1: GLSL has no empty array
+const int light_slots;   // max(lights, 1): GLSL has no empty arrays
 const int shadow_slots;
 
 uniform sampler2DShadow shadow_atlas;
@@ -12,16 +12,17 @@ uniform vec3 light_position[light_slots];
 uniform vec3 light_direction[light_slots];
 uniform vec3 light_color[light_slots];
 uniform vec2 light_spot_cos[light_slots];
-uniform int light_tile[light_slots];            // its first shadow tile, or -1 for none
+uniform int light_tile[light_slots];            // the light's first shadow tile, or -1 without shadow
 uniform mat4 shadow_from_world[shadow_slots];
 uniform vec3 shadow_tile[shadow_slots];
 
-// The unit direction towards light `i`, world space, and the share of its color that arrives there, but for shadows.
+// The unit direction towards light `i`, world space. `arriving` is the factor from light_color[i] to irradiance,
+// without shadows.
 vec3 towardsLightAt(int i, vec3 worldPos, out float arriving) {
     return towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i], worldPos, arriving);
 }
 
-// The share of it that arrives past its shadow map.
+// The unshadowed share of light `i` at `worldPos`; 1 for a light without shadow map. `toLight`: unit, world space.
 float shadowOf(int i, vec3 worldPos, vec3 toLight) {
     int tile = light_tile[i];
     if (tile < 0) return 1.0;
@@ -29,9 +30,10 @@ float shadowOf(int i, vec3 worldPos, vec3 toLight) {
     return shadowAt(shadow_atlas, shadow_from_world[tile], shadow_tile[tile], worldPos);
 }
 
-// The same for lights that are lobes, and so shine on what faces away from them; `facing`: dot(normal, toLight). Such a
-// surface is in its own shadow. A map tells that only roughly where light grazes: the shadow sets in from there on.
-const float TERMINATOR = 0.25;  // of `facing`
+// The unshadowed share of a light that is a lobe of spherical harmonics; `facing` = dot(normal, toLight). A lobe also
+// lights surfaces that face away from the light, although they are in their own shadow. Shadow maps are imprecise where
+// light grazes, so the share fades to 0 between `facing` = TERMINATOR and 0.
+const float TERMINATOR = 0.25;  // the cosine below which light grazes
 
 float lobesShadowOf(int i, vec3 worldPos, vec3 toLight, float facing) {
     if (light_tile[i] < 0) return 1.0;

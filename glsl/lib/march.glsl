@@ -1,8 +1,8 @@
-// What a pixel looks into: its directions, each marched in a few points until something blocks. The parameters that
-// methods share have their one meaning here. Positions and vectors are in view space, lengths in scene units.
+// Marching: the directions of a pixel, each tested for blocking at a few points. All methods that march include this
+// file, so that the parameters mean the same in each. Positions and vectors are in view space, lengths in scene units.
 //
-// kernel[i]: xyz a direction around +z times its reach in radii (aolab/maths/sampling.py: the falloff is in there),
-//            w its first point's offset, in steps.
+// kernel[i], from aolab/maths/sampling.py: xyz, a direction around +z times its reach in radii, which encodes the
+//            falloff; w, the offset of its first point, in steps.
 
 #include "lib/space.glsl"
 #include "lib/sampling.glsl"
@@ -17,9 +17,9 @@ uniform float thickness;  // radii
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
 
-const float OPEN = 2.0;   // no distance along a way is as large
+const float OPEN = 2.0;   // larger than any share of a reach
 
-// The surface point of a pixel, lifted off; `frame` turns the kernel around its normal.
+// The shaded point of a pixel, lifted off its surface. `frame` rotates the kernel's +z to the normal.
 struct Receiver {
     vec3 viewPos;
     vec3 normal;
@@ -27,7 +27,7 @@ struct Receiver {
     int set;
 };
 
-// The receiver of this fragment; false where it is background.
+// Computes the receiver of this fragment. Returns false in the background.
 bool receiverHere(out Receiver receiver) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float centreZ = texelFetch(viewZ, pixel, 0).r;
@@ -40,14 +40,14 @@ bool receiverHere(out Receiver receiver) {
     return true;
 }
 
-// The point `j` on direction `i`, `along` as a share of its reach; and whether something blocks it, and what.
+// Is point `j` on direction `i` blocked? `along`: its distance as a share of the reach; `occluder`: the blocker.
 bool isPointBlocked(Receiver receiver, int i, int j, out float along, out Occluder occluder) {
     vec3 way = receiver.frame * kernel[i].xyz * radius;
     along = (float(j) + interleavedOffset(kernel[i].w, receiver.set)) / float(steps);
     return isBlocked(receiver.viewPos + way * along, thickness * radius, occluder);
 }
 
-// Does anything block direction `i`?
+// Is direction `i` blocked at any of its points?
 bool isWayBlocked(Receiver receiver, int i) {
     bool blocked = false;
     for (int j = 0; j < steps; ++j) {
@@ -58,7 +58,7 @@ bool isWayBlocked(Receiver receiver, int i) {
     return blocked;
 }
 
-// The same, and what it is that blocks first: it hides the others.
+// Is direction `i` blocked? `first` is the nearest occluder on it: it hides the others.
 bool isWayBlocked(Receiver receiver, int i, out Occluder first) {
     bool blocked = false;
     for (int j = 0; j < steps; ++j) {
@@ -71,7 +71,7 @@ bool isWayBlocked(Receiver receiver, int i, out Occluder first) {
     return blocked;
 }
 
-// Where the first blocked point lies on direction `i`, as a share of its reach, or OPEN.
+// The distance of the first blocked point on direction `i`, as a share of its reach; OPEN if there is none.
 float firstBlocked(Receiver receiver, int i) {
     float first = OPEN;
     for (int j = 0; j < steps; ++j) {

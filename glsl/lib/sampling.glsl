@@ -1,4 +1,4 @@
-// Where to look: directions in the frame of a normal, interleaved over 4×4 pixels.
+// Interleaved sampling: the frame of a normal, and one of 16 sample sets for each pixel of a 4×4 block.
 
 const float PI = 3.14159265358979;
 
@@ -11,16 +11,16 @@ mat3 frameAround(vec3 n) {
     return mat3(1.0 + s * n.x * n.x * a, s * b, -s * n.x, b, s + n.y * n.y * a, -n.y, n);
 }
 
-// The number, 0..15, of this pixel's set of samples: each 4×4 block of pixels holds every set once.
-// A Bayer matrix, so that the sets of neighbours differ most. M = 4×4 as in SSDO (Ritschel et al. 2009, section 3).
+// The index, 0..15, of a pixel's sample set; each 4×4 block of pixels has every set once (SSDO, Ritschel et al. 2009,
+// section 3: M = 4×4). The order is a Bayer matrix, so that the sets of neighbouring pixels differ most.
 int interleavedSet(ivec2 pixel) {
     ivec2 low = pixel & 1;
     ivec2 high = (pixel >> 1) & 1;
     return 4 * (2 * (low.x ^ low.y) + low.y) + 2 * (high.x ^ high.y) + high.y;
 }
 
-// The frame around `n`, turned by the angle of this set: the one kernel seen by 16 pixels in 16 directions
-// (Umenhoffer et al. 2009, section 4.2).
+// The frame around `n`, rotated by the angle of this set: 16 pixels use the same kernel at 16 angles (Umenhoffer et al.
+// 2009, section 4.2).
 mat3 interleavedFrame(vec3 n, int set) {
     float angleRad = 2.0 * PI * float(set) / 16.0;
     mat3 frame = frameAround(n);
@@ -28,7 +28,7 @@ mat3 interleavedFrame(vec3 n, int set) {
     return mat3(c * frame[0] + s * frame[1], c * frame[1] - s * frame[0], n);
 }
 
-// How far along its direction a sample of this set lies, as a fraction of one step: `offset` is the kernel's own.
+// The offset of a direction's first point in this set, as a fraction of one step; `offset` is the kernel's.
 float interleavedOffset(float offset, int set) {
     return fract(offset + float(set) / 16.0);
 }

@@ -1,6 +1,7 @@
-// Spherical harmonics of a sum of directions, by its moments: on the unit sphere the polynomials of bands 0 to 3 are
-// combinations of the 6 second and 10 third moments, Σ w d_i d_j and Σ w d_i d_j d_k. To add a direction to these takes a
-// third of the arithmetic of its 16 basis functions, and what they are scaled and combined with waits for the end.
+// Spherical harmonics of a weighted sum of directions, by moments. On the unit sphere the polynomials of bands 0 to 3
+// are linear combinations of the 6 second moments Σ w d_i d_j and the 10 third moments Σ w d_i d_j d_k. Adding a
+// direction to the moments costs a third of evaluating its 16 basis functions; scaling and combining is done once, at
+// the end.
 
 #include "lib/sh.glsl"
 
@@ -15,7 +16,7 @@ struct Moments {
 
 const Moments NO_MOMENTS = Moments(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 
-// Adds the unit vector `d` with the given weight.
+// Adds the unit vector `d` with its weight.
 void addDirection(inout Moments m, vec3 d, float weight) {
     vec3 weighted = weight * d;
     vec3 squares = weighted * d, products = weighted * d.yzx;
@@ -27,7 +28,7 @@ void addDirection(inout Moments m, vec3 d, float weight) {
     m.xyz += products.x * d.z;
 }
 
-// Σ w y_i(d) over the directions that were added: shBasis, monomial by monomial.
+// Σ w y_i(d) over the added directions. The matrix lists the polynomials of shBasis in the same order.
 mat4 shFromMoments(Moments m) {
     float one = m.squares.x + m.squares.y + m.squares.z;         // xx + yy + zz = 1
     vec3 d = m.cubes + m.byNext.zxy + m.byLast.yzx;              // x = xxx + xyy + xzz, and so on

@@ -1,17 +1,17 @@
-// Rotation and product of spherical harmonics, bands 0 to 3, by quadrature over the sphere: plain, exact and slow.
-// The NumPy twins are in aolab/maths/harmonics.py.
+// Rotation and product of spherical harmonics, bands 0 to 3, by quadrature over the sphere: exact, but slow.
+// NumPy twins: aolab/maths/harmonics.py.
 
 #include "lib/sh.glsl"
 
-// Gauss-Legendre rings of constant z times equal steps of azimuth: exact for polynomials up to degree 9, that of a
-// product's three factors. Nodes and weights: Abramowitz & Stegun 1964, table 25.4, n = 5.
+// Gauss-Legendre rings of constant z, times equal steps of azimuth. The rule is exact for polynomials up to degree 9,
+// the degree of a product's integral. Nodes and weights: Abramowitz & Stegun 1964, table 25.4, n = 5.
 const int SH_RINGS = 5;
 const int SH_AZIMUTHS = 10;
 const float SH_RING_Z[5] = float[5](-0.906179845938664, -0.538469310105683, 0.0, 0.538469310105683, 0.906179845938664);
 const float SH_RING_WEIGHT[5] =
     float[5](0.236926885056189, 0.478628670499366, 0.568888888888889, 0.478628670499366, 0.236926885056189);
 
-// The i-th direction of the quadrature, and its solid angle in w.
+// The i-th direction of the quadrature (xyz) and its solid angle (w).
 vec4 shNode(int i) {
     int ring = i / SH_AZIMUTHS;
     float stepRad = radians(360.0) / float(SH_AZIMUTHS);
@@ -20,7 +20,7 @@ vec4 shNode(int i) {
     return vec4(sqrt(1.0 - z * z) * vec2(cos(azimuthRad), sin(azimuthRad)), z, SH_RING_WEIGHT[ring] * stepRad);
 }
 
-// The function f turned by `rotation`: f'(w) = f(transpose(rotation) w).
+// The coefficients of the rotated function f'(w) = f(transpose(rotation) w).
 mat4 shRotate(mat4 c, mat3 rotation) {
     mat4 turned = mat4(0.0);
     for (int i = 0; i < SH_RINGS * SH_AZIMUTHS; ++i) {
@@ -30,7 +30,7 @@ mat4 shRotate(mat4 c, mat3 rotation) {
     return turned;
 }
 
-// The product of two functions, cut to 4 bands.
+// The product of two functions, truncated to 4 bands.
 mat4 shProduct(mat4 a, mat4 b) {
     mat4 product = mat4(0.0);
     for (int i = 0; i < SH_RINGS * SH_AZIMUTHS; ++i) {

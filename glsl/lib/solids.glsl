@@ -1,8 +1,9 @@
-// Solids between peeled layers of depth (SSDO, Ritschel et al. 2009, section 4): the first and second depth are the front
-// and back of one, and so are the third and fourth.
+// Solids between peeled depth layers (SSDO, Ritschel et al. 2009, section 4): layers 0 and 1 are the front and the back
+// of a solid, and so are layers 2 and 3.
 
-// Which layer, 0 to 3, is the nearer side of the solid that `viewZ` is in, or -1 where it is in none. `layersZ`: the depths
-// of four layers, -infinity where there is none. A solid without a back is taken to be `thickness` deep.
+// If `viewZ` lies in a solid, the index, 0 to 3, of the layer of the nearer side, front or back; otherwise -1.
+// `layersZ`: viewZ of the four layers, -infinity for a missing layer. A solid without a back is assumed to be
+// `thickness` deep.
 int solidAt(vec4 layersZ, float viewZ, float thickness) {
     bool second = layersZ.z > viewZ;
     vec2 solid = second ? layersZ.zw : layersZ.xy;

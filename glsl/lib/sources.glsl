@@ -1,5 +1,5 @@
-// Up to four textures that a pass treats alike: what it asks of the geometry, it asks once for all of them.
-// The values of a pixel are a mat4, a column a texture.
+// Up to four input textures that a pass treats alike, so that it evaluates the geometry once for all of them.
+// The values of a pixel are a mat4, with one column per texture.
 
 const int sources;
 
