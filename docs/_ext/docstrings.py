@@ -1,11 +1,11 @@
-"""Docstrings are written to be read in an editor; what reStructuredText asks for beyond that is added here."""
+"""Docstrings are written for the editor; this extension adds the syntax that reStructuredText needs."""
 
 import re
 from typing import Any
 
 from sphinx.application import Sphinx
 
-# `Instance`s: the end of a literal has to be told apart from the word that goes on
+# `Instance`s: reStructuredText needs an escaped space between the end of a literal and the following letter
 LITERAL_IN_WORD = re.compile(r"(`[^`]+`)(?=\w)")
 
 

@@ -1,4 +1,4 @@
-"""Directives for what the code already says: a module's facts, its parameters, the scenes, the shell's help."""
+"""Directives that generate tables from the code: a module's facts, its parameters, the scenes, the shell's help."""
 
 import inspect
 from typing import Any
@@ -13,11 +13,11 @@ from aolab.modules import MODULES, Module
 from aolab.modules.parameters import describe
 from aolab.shell.cli import app as shell
 
-HELP_COLUMNS = 84  # what a page shows without scrolling
+HELP_COLUMNS = 84  # the width of a code block on a page, without scrolling
 
 
 class Markdown(SphinxDirective):
-    """A directive that writes Markdown."""
+    """A directive whose `text` is Markdown."""
 
     optional_arguments = 1
 
@@ -36,7 +36,7 @@ class Markdown(SphinxDirective):
 
 
 class ModuleFacts(Markdown):
-    """What a module says of itself: docstring, paper, shader, outputs."""
+    """The facts of a module: docstring, paper, shader, outputs."""
 
     def text(self) -> str:
         module = self.module
@@ -51,7 +51,7 @@ class ModuleFacts(Markdown):
 
 
 class ParameterTable(Markdown):
-    """Every parameter of a module, from its statement."""
+    """The table of a module's parameters, from their declarations."""
 
     def text(self) -> str:
         keys = ("name", "type", "default", "range", "unit", "description")
@@ -60,13 +60,13 @@ class ParameterTable(Markdown):
             about |= {key: f"`{about[key]}`" for key in ("name", "default")}
             about["range"] = (
                 about["range"].replace(" ", "\u00a0").replace(",\u00a0", ", ")
-            )  # a sign stays with its number
+            )  # no line break between a sign and its number
             rows.append([about[key] for key in keys])
         return _table([key.capitalize() for key in keys], rows)
 
 
 class ModuleTable(Markdown):
-    """The modules that there are; the argument is the way to their pages."""
+    """The table of all modules; the argument is the path to their pages."""
 
     def text(self) -> str:
         folder = "".join(self.arguments)
@@ -75,14 +75,14 @@ class ModuleTable(Markdown):
 
 
 class SceneTable(Markdown):
-    """The scenes that there are, with their parameters."""
+    """The table of all scenes, with their parameters."""
 
     def text(self) -> str:
         rows = []
         for scene in map(describe_scene, scene_names()):
             parameters = ", ".join(f"`{name}={value}`" for name, value in scene.parameters.items())
             rows.append([f"`{scene.name}`", scene.summary, parameters])
-        return _table(["Name", "What it shows", "Parameters, with defaults"], rows)
+        return _table(["Name", "Contents", "Parameters with defaults"], rows)
 
 
 class ShellHelp(Markdown):
