@@ -41,7 +41,7 @@ def test_band_1_has_the_signs_of_sloan():
 
 
 def test_basis_equals_its_definition_by_legendre_functions():
-    """√2 K P_l^|m| (cos mφ | sin |m|φ), where SciPy's P holds the Condon-Shortley sign (Sloan 2008)."""
+    """√2 K P_l^|m| (cos mφ | sin |m|φ), where SciPy's P includes the Condon-Shortley sign (Sloan 2008)."""
     directions = random_directions(50)
     azimuth = np.arctan2(directions[:, 1], directions[:, 0])
     y = sh.basis(directions, 4)
@@ -68,7 +68,7 @@ def test_unknown_bands_are_refused(bands):
 
 
 def test_clamped_cosine_has_its_exact_coefficients():
-    """Around n = z only m = 0 is left: √π/2, √(π/3), √(5π)/8, 0."""
+    """Around n = z only the coefficients of m = 0 are not 0: √π/2, √(π/3), √(5π)/8, 0."""
     directions, solid_angles = sphere_quadrature(8)
     lobe = np.maximum(directions[:, 2:], 0)
     coefficients = sh.project(lobe, directions, solid_angles, bands=4)[:, 0]
@@ -95,7 +95,7 @@ def test_project_and_evaluate_are_inverse_within_the_bands():
     np.testing.assert_allclose(sh.project(values, directions, solid_angles, bands=4), coefficients, atol=1e-12)
 
 
-def test_a_constant_projects_exactly_whatever_the_samples():
+def test_a_constant_is_projected_exactly_for_any_samples():
     solid_angles = np.full(6, 4 * np.pi / 6)
     coefficients = sh.project(np.full((6, 1), 0.7), AXES, solid_angles, bands=4)
     np.testing.assert_allclose(sh.evaluate(coefficients, random_directions(9)), 0.7, rtol=1e-14)
@@ -104,7 +104,7 @@ def test_a_constant_projects_exactly_whatever_the_samples():
 # --- lobes and windows
 
 
-def test_a_zonal_lobe_is_its_profile_turned():
+def test_a_zonal_lobe_is_its_rotated_profile():
     """Σ z_l y_l0 as a function of cosine alone, about any axis, projected by quadrature."""
     nodes, solid_angles = sphere_quadrature(8)
     zonal, axes = np.array([0.3, -1.2, 0.7, 0.4]), random_directions(6)
@@ -125,14 +125,14 @@ def test_a_lobe_for_each_direction():
 
 
 def test_clamped_cosine_integrates_to_irradiance():
-    """∫ L max(w·n, 0) dw: the product integral is what `irradiance` and `evaluate` make of the same L."""
+    """∫ L max(w·n, 0) dw as a product integral equals `irradiance` and `evaluate` of the same L."""
     radiance, normals = np.random.default_rng(5).normal(size=(16, 3)), random_directions(20)
     expected = sh.evaluate(sh.irradiance(radiance), normals)
     np.testing.assert_allclose(sh.clamped_cosine(normals) @ radiance, expected, atol=1e-13)
 
 
 def test_clamped_cosine_is_the_projection_about_any_axis():
-    rings, weights = sphere_quadrature(8)  # exact for the cut at z = 0, so the axis is turned to z
+    rings, weights = sphere_quadrature(8)  # exact for a cut at z = 0, so the axis is rotated to z
     turn = Rotation.random(random_state=2).as_matrix()
     coefficients = sh.project(np.maximum(rings[:, 2:], 0), rings @ turn.T, weights, 4)[:, 0]
     np.testing.assert_allclose(sh.clamped_cosine(turn[:, 2]), coefficients, atol=1e-13)
@@ -180,7 +180,7 @@ def test_a_window_that_leaves_no_light_is_refused():
 # --- rotation and product
 
 
-def test_rotation_is_the_projection_of_the_turned_function():
+def test_rotation_is_the_projection_of_the_rotated_function():
     nodes, solid_angles = sphere_quadrature(8)
     coefficients = np.random.default_rng(6).normal(size=(4, 16))
     for matrix in Rotation.random(4, random_state=6).as_matrix():
@@ -189,7 +189,7 @@ def test_rotation_is_the_projection_of_the_turned_function():
         np.testing.assert_allclose(sh.rotate(coefficients, matrix), expected, atol=1e-12)
 
 
-def test_rotation_turns_a_lobe_with_its_axis():
+def test_rotation_rotates_a_lobe_with_its_axis():
     matrices, axes = Rotation.random(10, random_state=7).as_matrix(), random_directions(10)
     turned = sh.rotate(sh.clamped_cosine(axes), matrices)
     np.testing.assert_allclose(turned, sh.clamped_cosine((matrices @ axes[..., None])[..., 0]), atol=1e-13)
@@ -244,7 +244,7 @@ def test_glsl_basis_and_irradiance_equal_numpy(gl):
     coefficients = np.random.default_rng(3).normal(size=(9, 3)).astype("f4")
     program["coefficients"].write(coefficients.tobytes())
     directions = np.concatenate([AXES, random_directions(100)]).astype("f4")
-    gl.simple_framebuffer((1, 1)).use()  # transform feedback wants a complete one, even unused
+    gl.simple_framebuffer((1, 1)).use()  # transform feedback needs a complete framebuffer, even if unused
     result = gl.buffer(reserve=len(directions) * 12 * 4)
     gl.vertex_array(program, [(gl.buffer(directions.tobytes()), "3f", "direction")]).transform(result, mode=gl.POINTS)
     out = np.frombuffer(result.read(), "f4").reshape(-1, 12)

@@ -1,4 +1,4 @@
-"""Vertex normals against solids whose normals are known."""
+"""Vertex normals of solids with known normals."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_a_cube_is_faceted():
 def test_a_cube_is_round_above_90_degrees():
     vertices, _, _, normals = made(trimesh.creation.box(), crease=91)
     assert len(vertices) == 8
-    # angle weights: the diagonal of a face does not pull
+    # with angle weights, a face's diagonal has no effect
     np.testing.assert_allclose(normals, vertices / np.linalg.norm(vertices, axis=1, keepdims=True), atol=1e-6)
 
 
@@ -56,11 +56,11 @@ def test_seams_do_not_show():
     vertices, _, _, normals = made(soup)
     _, _, _, welded = made(sphere)
     by_place = {tuple(place): normal for place, normal in zip(np.float32(sphere.vertices), welded, strict=True)}
-    assert len(vertices) == len(soup.vertices)  # each keeps its own UV
+    assert len(vertices) == len(soup.vertices)  # each vertex keeps its own UV
     np.testing.assert_allclose(normals, [by_place[tuple(place)] for place in vertices], atol=1e-5)
 
 
-def test_plus_and_minus_zero_are_one_place():
+def test_plus_and_minus_zero_are_the_same_position():
     vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0.3], [-0.0, 0, 0], [0, 1, 0.3], [-1, 0, 0]], np.float32)
     _, faces, _, normals = smooth_normals(vertices, np.array([[0, 1, 2], [3, 4, 5]]), 80)
     np.testing.assert_allclose(normals[faces[0, 0]], normals[faces[1, 0]], atol=1e-6)
@@ -76,7 +76,7 @@ def test_splitting_keeps_the_triangles(solid, sizes):
     np.testing.assert_array_equal(vertices[faces], before[shape.faces])
     np.testing.assert_array_equal(vertices, before[source])
     np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-6)
-    # within the crease, no normal turns away from its face
+    # every normal is less than 60° from its face's normal
     assert ((normals[faces] * face_normals(vertices, faces)[:, None]).sum(axis=2) > 0.5).all()
 
 
@@ -90,8 +90,8 @@ def test_scale_does_not_matter(scale):
     np.testing.assert_allclose(normals, scaled, atol=1e-6)
 
 
-def test_a_corner_of_many_faces():
-    """A cone's tip, where 2,000 faces meet: every one sees only those within the crease."""
+def test_a_point_of_many_faces_averages_only_within_the_crease():
+    """At a cone's tip 2,000 faces meet. Each corner averages only the faces within the crease."""
     angle = np.linspace(0, 2 * np.pi, 2000, endpoint=False)
     rim = np.stack([np.cos(angle), np.sin(angle), np.full_like(angle, -1)], axis=1)
     faces = [[0, 1 + i, 1 + (i + 1) % 2000] for i in range(2000)]

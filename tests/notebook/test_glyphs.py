@@ -13,11 +13,11 @@ import aolab
 from aolab import Camera, DirectionalLight, Environment, ParameterError, PointLight, SpotLight
 from aolab.maths.harmonics import basis, clamped_cosine
 
-HALF = 2e-3  # coefficients are half floats, and so are the normals that they are made of
+HALF = 2e-3  # coefficients and normals are half floats
 DARK = Environment.constant(0.0)
 UP = np.array((0.0, 1.0, 0.0))
 ANYWHERE = (32, 40)
-BESIDE_THE_RED_BOX = (22, 33)  # on the floor before the left one of `small_scenes.boxes`
+BESIDE_THE_RED_BOX = (22, 33)  # on the floor in front of the left box of `small_scenes.boxes`
 LAMPS = (
     DirectionalLight((0.5, -1, -0.6), (1.0, 0.8, 0.5), shadow=False),
     PointLight((1.5, 2, 2), (3.0, 4.0, 6.0), shadow=False),
@@ -49,7 +49,7 @@ def test_an_open_surface_is_the_clamped_cosine(lab, plane):
     assert glyph.normal == pytest.approx(UP, abs=HALF)
 
 
-def test_the_position_is_where_the_pixel_is(lab, plane):
+def test_the_position_is_the_surface_point_of_the_pixel(lab, plane):
     frame = lab.render(plane, "s3ho")
     for column, row in [(0, 47), (40, 30), (63, 25)]:
         expected = small_scenes.world_positions(frame, plane.camera)[row, column]
@@ -73,7 +73,7 @@ def test_the_lobe_leans_away_from_a_wall(lab, side, leans):
     assert leans * (columns.mean() - 119.5) > 10
 
 
-TWO_ABOVE = (0, 2, 0)  # to be put above the pixel
+TWO_ABOVE = (0, 2, 0)  # relative to the pixel's surface point
 
 
 @pytest.mark.parametrize(
@@ -86,14 +86,14 @@ TWO_ABOVE = (0, 2, 0)  # to be put above the pixel
     ],
 )
 @pytest.mark.parametrize("light_window", [2.0, 64.0])
-def test_a_facing_open_surface_receives_what_the_light_says(lab, plane, light, expected, light_window):
+def test_an_open_surface_facing_a_light_receives_its_irradiance(lab, plane, light, expected, light_window):
     if not isinstance(light, DirectionalLight):
         light = with_changes(light, position=tuple(picked(lab, plane).position + 2 * UP))
     glyph = picked(lab, plane.replace(lights=(light,), environment=DARK), light_window=light_window)
     assert glyph.irradiance == pytest.approx(expected, rel=HALF, abs=1e-6)
 
 
-def test_the_window_is_the_frames(lab, plane):
+def test_the_light_window_is_the_parameter_of_the_frame(lab, plane):
     scene = plane.replace(lights=LAMPS[:1], environment=DARK)
     broad, sharp = (picked(lab, scene, light_window=window) for window in (1.5, 64.0))
     assert sharp.brightest > 1.5 * broad.brightest
@@ -101,7 +101,7 @@ def test_the_window_is_the_frames(lab, plane):
 
 @pytest.mark.parametrize("indirect", [False, True])
 @pytest.mark.parametrize("pixel", [(20, 28), (29, 30), (44, 33), (10, 40), (15, 22)])
-def test_its_irradiance_is_what_the_frame_shows(lab, indirect, pixel):
+def test_its_irradiance_gives_the_radiance_of_the_frame(lab, indirect, pixel):
     scene = small_scenes.boxes(lights=LAMPS).replace(environment=Environment.sky())
     frame = lab.render(scene, "s3ho", radius=1.0, directions=16, indirect=indirect)
     glyph = aolab.glyph(frame, pixel)
@@ -110,7 +110,7 @@ def test_its_irradiance_is_what_the_frame_shows(lab, indirect, pixel):
     assert glyph.irradiance * frame["albedo"][row, column] / np.pi == pytest.approx(shown, rel=0.005)
 
 
-def test_the_bounce_is_what_the_frame_calls_indirect(lab):
+def test_its_bounce_gives_the_indirect_radiance_of_the_frame(lab):
     scene = small_scenes.boxes(lights=LAMPS).replace(environment=Environment.sky())
     frame = lab.render(scene, "s3ho", radius=1.0, directions=32, indirect=True)
     glyph = aolab.glyph(frame, BESIDE_THE_RED_BOX)
@@ -150,10 +150,12 @@ def test_the_light_picture_shows_the_environments_colour(lab, plane):
     assert glyph.light_picture((60, 60))[30, 30] == pytest.approx((255, linear_half, 0), abs=1)
 
 
-def test_the_lobe_is_data_too(lab, plane):
+def test_the_lobe_has_values_and_a_mesh(lab, plane):
     lobe = picked(lab, plane).lobe
     assert lobe.values == pytest.approx(basis(lobe.directions, 4) @ clamped_cosine(UP), abs=2 * HALF)
-    assert lobe.values.max() == pytest.approx(17 / 16, abs=2 * HALF)  # of four bands; the cosine itself ends at 1
+    assert lobe.values.max() == pytest.approx(
+        17 / 16, abs=2 * HALF
+    )  # the maximum with four bands; the cosine's own maximum is 1
     lengths = np.linalg.norm(lobe.mesh.vertices, axis=1)
     assert lengths == pytest.approx(np.maximum(np.abs(lobe.values), 1e-3), abs=1e-6)
     red, _, blue, _ = lobe.mesh.colors.T
@@ -173,14 +175,14 @@ def test_a_bounce_colours_the_lobe(lab):
     assert glyph.occlusion_picture().shape == (240, 240, 3)
 
 
-def test_open_surfaces_have_lobes_of_one_size(lab, plane):
+def test_open_surfaces_have_lobes_of_the_same_size(lab, plane):
     frame = lab.render(plane, "s3ho", radius=1.0)
     bright = lab.relight(frame, environment=Environment.constant(7.0))
     one, other = (aolab.glyph(f, p).occlusion_picture() for f, p in [(frame, (10, 30)), (bright, (50, 46))])
     assert np.abs(one.astype(int) - other).max() <= 2
 
 
-def test_pictures_have_the_size_that_is_asked_for(lab, plane):
+def test_pictures_have_the_requested_size(lab, plane):
     glyph = picked(lab, plane)
     assert glyph.occlusion_picture((90, 60)).shape == glyph.light_picture((90, 60)).shape == (60, 90, 3)
     assert glyph.occlusion_picture((60, 90)).dtype == np.uint8
@@ -196,7 +198,7 @@ def test_a_pixel_outside_is_refused_with_the_size(lab, plane, pixel):
         picked(lab, plane, pixel)
 
 
-def test_numpys_whole_numbers_are_pixels(lab, plane):
+def test_numpy_integers_are_accepted_as_pixels(lab, plane):
     assert picked(lab, plane, np.array(ANYWHERE)).pixel == ANYWHERE
 
 

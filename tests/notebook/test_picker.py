@@ -1,4 +1,4 @@
-"""`aolab.glyph_picker`: a click in the browser becomes a pixel, and Python answers with its glyph."""
+"""`aolab.glyph_picker`: a click in the browser sets a pixel, and Python sets the picture of its glyph."""
 
 import asyncio
 import base64
@@ -18,7 +18,7 @@ from PIL import Image
 import aolab
 from aolab import Camera, ParameterError
 
-SKYLINE = Camera(eye=(0, 1, 6), target=(0, 1, 0))  # the plane below, nothing above
+SKYLINE = Camera(eye=(0, 1, 6), target=(0, 1, 0))  # the plane below, the background above
 GROUND, SKY = (30, 40), (10, 2)
 
 
@@ -42,7 +42,7 @@ def test_a_picked_pixel_shows_its_glyph(frame):
     assert picker.message == "Pixel (30, 40): 100% open, irradiance 3.14, 3.14, 3.14."
 
 
-def test_the_background_says_why_there_is_no_glyph(frame):
+def test_a_background_pixel_gives_a_message_and_no_glyph(frame):
     picker = aolab.glyph_picker(frame)
     picker.pixel = GROUND
     picker.pixel = SKY
@@ -52,7 +52,7 @@ def test_the_background_says_why_there_is_no_glyph(frame):
     assert picker.picture
 
 
-def test_a_click_that_arrives_in_another_thread_is_answered_in_this_one(frame):
+def test_a_click_in_another_thread_is_handled_in_the_thread_of_the_context(frame):
     async def notebook():
         picker = aolab.glyph_picker(frame)
         click = threading.Thread(target=picker.set_state, args=({"pixel": list(GROUND)},))
@@ -70,14 +70,14 @@ def test_a_frame_without_harmonics_is_refused_at_once(lab, plane):
         aolab.glyph_picker(lab.render(plane, "none"))
 
 
-def test_without_anywidget_it_says_what_to_install(frame, monkeypatch):
+def test_without_anywidget_the_error_names_the_package(frame, monkeypatch):
     monkeypatch.setitem(sys.modules, "anywidget", None)
     monkeypatch.delitem(sys.modules, "aolab.notebook.widget", raising=False)
     with pytest.raises(ParameterError, match="pip install anywidget"):
         aolab.glyph_picker(frame)
 
 
-# --- the half in the browser
+# --- the browser side
 
 PAGE = """<!doctype html><meta charset="utf-8"><div id="widget" style="width: 32px"></div><pre id="seen"></pre>
 <script type="module">
@@ -166,9 +166,9 @@ def test_clicks_and_keys_in_a_browser(tmp_path, frame):
             break
     assert seen, f"the page's script did not end:\n{document[-2000:]}"
     seen = json.loads(html.unescape(seen))
-    assert seen["widths"] == [64, 32, 192]  # its own, then shrunk, then enlarged
+    assert seen["widths"] == [64, 32, 192]  # natural, shrunk, enlarged
     assert seen["pixels"] == [[0, 0], [62, 46], [40, 10], [63, 47], [63, 47], [7, 30], [8, 30], [8, 20], [0, 20]]
     assert seen["marker"] == [20.25, 5.25]  # the middle of pixel (40, 10) of the shrunk image
-    assert seen["unanswered"] == [False, "<b>said</b>"]  # as text: nothing that is said becomes part of the page
+    assert seen["unanswered"] == [False, "<b>said</b>"]  # as text: a message cannot add elements to the page
     assert seen["answered"] == [True, 64, "<b>said</b>"]
     assert seen["listeners"] == []

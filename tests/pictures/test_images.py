@@ -1,4 +1,4 @@
-"""Pictures from files: every kind comes out as documented; every bad one is refused by name."""
+"""Pictures from files: every kind is read as documented; every bad file is refused by name."""
 
 import io
 import struct
@@ -22,7 +22,7 @@ def encoded(image: Image.Image, kind: str = "PNG", **options) -> bytes:
 
 
 def png_claiming(width: int, height: int) -> bytes:
-    """A PNG whose header claims a size, and which holds almost nothing."""
+    """A tiny PNG whose header claims a large size."""
 
     def chunk(kind: bytes, body: bytes) -> bytes:
         return struct.pack(">I", len(body)) + kind + body + struct.pack(">I", zlib.crc32(kind + body))
@@ -34,7 +34,7 @@ def png_claiming(width: int, height: int) -> bytes:
 # --- pictures of 8 bits
 
 
-def test_rgba_comes_out_as_it_is_from_path_and_bytes(tmp_path):
+def test_rgba_is_unchanged_from_path_and_bytes(tmp_path):
     pixels = RNG.integers(0, 256, (5, 7, 4), np.uint8)
     path = tmp_path / "a.png"
     path.write_bytes(encoded(Image.fromarray(pixels)))
@@ -74,14 +74,14 @@ def test_palette_transparency_becomes_alpha():
     np.testing.assert_array_equal(found[0], [(10, 20, 30, 255), (40, 50, 60, 0)])
 
 
-def test_cmyk_jpeg_is_red_where_it_was():
+def test_a_red_cmyk_jpeg_stays_red():
     found = read_image(encoded(Image.new("CMYK", (16, 16), (0, 255, 255, 0)), "JPEG"), "a")
     np.testing.assert_allclose(found[8, 8], (255, 0, 0, 255), atol=6)  # JPEG loses a little
 
 
 def test_exif_rotation_is_ignored():
     exif = Image.Exif()
-    exif[0x0112] = 6  # orientation: to be turned by 90°
+    exif[0x0112] = 6  # orientation: rotate by 90°
     assert read_image(encoded(Image.new("RGB", (8, 4)), "JPEG", exif=exif), "a").shape == (4, 8, 4)
 
 
@@ -100,7 +100,7 @@ def test_corrupt_png_is_refused_by_name():
         read_image(bytes(data), "bark")
 
 
-def test_what_is_no_picture_is_refused_with_the_known_kinds():
+def test_a_file_that_is_not_a_picture_is_refused_with_the_known_kinds():
     with pytest.raises(FileError, match="image 'notes' is corrupt or none of PNG, JPEG"):
         read_image(b"dear diary", "notes")
 
@@ -110,7 +110,7 @@ def test_a_missing_picture_is_named(tmp_path):
         read_image(tmp_path / "bark.png", "bark")
 
 
-def test_floating_point_tiff_is_sent_to_exr():
+def test_floating_point_tiff_is_refused_with_the_formats_that_may_have_floats():
     image = Image.fromarray(np.ones((2, 2), np.float32))
     with pytest.raises(FileError, match=r"floating-point numbers; only \.exr and \.hdr files"):
         read_image(encoded(image, "TIFF"), "a")
@@ -118,7 +118,7 @@ def test_floating_point_tiff_is_sent_to_exr():
 
 @pytest.mark.parametrize(("width", "height"), [(12000, 12000), (40000, 40000), (10**6, 10**6)])
 def test_a_decompression_bomb_is_refused_before_decoding(width, height):
-    """Between Pillow's warning and its error, beyond both: one error of ours, with count and limit."""
+    """Below and above Pillow's own limits, the error is a FileError with count and limit."""
     with pytest.raises(FileError, match=rf"image 'bomb' is refused: .*{width * height} .*limit.* 134217728"):
         read_image(png_claiming(width, height), "bomb")
 
@@ -133,7 +133,7 @@ def test_the_limit_is_a_parameter():
 def test_srgb_decodes_by_its_standard():
     found = linear_from_srgb(np.array([[0, 10, 11, 128, 255]], np.uint8))
     assert found.dtype == np.float32
-    # IEC 61966-2-1; 10 is the last code of its linear part
+    # IEC 61966-2-1; 10 is the last code of the linear part
     np.testing.assert_allclose(found, [[0, 10 / 255 / 12.92, 0.00334654, 0.21586050, 1]], rtol=2e-6)
 
 
@@ -162,12 +162,12 @@ def test_exr_alpha_is_left_out_and_grey_is_repeated(tmp_path):
     np.testing.assert_array_equal(grey, np.repeat(pixels[..., :1], 3, axis=2))
 
 
-def test_exr_passes_infinite_numbers_on(tmp_path):
+def test_infinite_numbers_of_an_exr_are_kept(tmp_path):
     pixels = np.full((1, 2, 3), np.inf, np.float32)
     assert np.isinf(read_radiance(write_exr(tmp_path / "a.exr", {"RGB": pixels}))).all()
 
 
-def test_exr_without_the_channels_says_which_it_has(tmp_path):
+def test_exr_without_the_needed_channels_is_refused_with_its_channels(tmp_path):
     plane = np.ones((2, 2), np.float32)
     path = write_exr(tmp_path / "depth.exr", {"Z": plane, "R": plane})
     with pytest.raises(FileError, match=r"depth\.exr' has the channels R, Z; it needs R, G, B or a single Y"):

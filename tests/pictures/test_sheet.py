@@ -1,4 +1,4 @@
-"""Contact sheets and tables: everything is on them, and nothing of it is painted over."""
+"""Contact sheets and tables: all pictures and texts are drawn, and none is covered."""
 
 import numpy as np
 from PIL import Image
@@ -16,7 +16,7 @@ def ink(picture: Image.Image, rows: slice) -> int:
     return int((np.asarray(picture)[rows] < 128).all(axis=-1).sum())
 
 
-def test_pictures_stand_in_rows_with_their_captions():
+def test_pictures_are_in_rows_with_their_captions():
     sheet = contact_sheet([("one", RED), ("two", RED), ("three", RED)], 2)
     assert sheet.size == (2 * (300 + MARGIN) + MARGIN, 2 * (20 + CAPTION + MARGIN) + MARGIN)
     assert count(sheet, (255, 0, 0)) == 3 * RED[..., 0].size
@@ -24,12 +24,12 @@ def test_pictures_stand_in_rows_with_their_captions():
     assert ink(sheet, slice(MARGIN + 20, MARGIN + 20 + CAPTION)) > 50
 
 
-def test_a_title_is_wrapped_above_them():
+def test_a_title_is_wrapped_above_the_pictures():
     plain, long = contact_sheet([("", RED)], 1), contact_sheet([("", RED)], 1, title="seven words " * 20)
     assert (long.height - plain.height) % LINE == 0
     assert long.height - plain.height >= 4 * LINE
     assert count(long, (255, 0, 0)) == RED[..., 0].size
-    assert not (np.asarray(long)[:, -4:] < 128).any()  # no word runs out of the sheet
+    assert not (np.asarray(long)[:, -4:] < 128).any()  # no word leaves the sheet
 
 
 def test_a_table_has_its_rows_and_columns():
@@ -40,5 +40,5 @@ def test_a_table_has_its_rows_and_columns():
     assert wider.height - one_less.height == LINE
 
 
-def test_gray_is_white_where_nothing_was_drawn():
+def test_gray_is_white_in_the_background():
     assert gray(np.array([[0.0, 0.5, 1.0, 2.0, np.nan]]))[0, :, 0].tolist() == [0, 128, 255, 255, 255]

@@ -1,4 +1,4 @@
-"""The camera: a rigid view, a projection that holds the scene, and what it refuses."""
+"""The camera: a rigid view, a projection that contains the scene, and its errors."""
 
 import numpy as np
 import pytest
@@ -21,7 +21,7 @@ def test_the_view_is_rigid_and_looks_down_minus_z(eye):
     assert np.linalg.det(matrix[:3, :3]) == pytest.approx(1)
     distance = float(np.linalg.norm(eye))
     np.testing.assert_allclose(matrix @ (0, 0, 0, 1), np.array([0, 0, -distance, 1]), atol=1e-9 * distance)
-    assert (matrix[:3, :3] @ (0.1, 1, 0))[1] > 0  # up stays up
+    assert (matrix[:3, :3] @ (0.1, 1, 0))[1] > 0  # the up vector stays up
     assert (matrix[:3, :3] @ (0.1, 1, 0))[0] == pytest.approx(0, abs=1e-12)
 
 
@@ -33,7 +33,7 @@ def test_the_field_of_view_is_vertical():
 
 
 @pytest.mark.parametrize("eye", [(0, 0, 5), (0.5, 0.5, 0.5), (0, 0, 100), (0, 0, 1.0001)])
-def test_all_of_the_scene_that_is_before_the_eye_is_between_the_clip_planes(eye):
+def test_the_scene_in_front_of_the_eye_is_between_the_clip_planes(eye):
     camera = Camera(eye, (0, 0, 0))
     near, far = camera.clip_planes(UNIT)
     assert 0 < near < far
@@ -44,7 +44,7 @@ def test_all_of_the_scene_that_is_before_the_eye_is_between_the_clip_planes(eye)
     assert near < along[along > 0].min() or near == pytest.approx(far * 1e-3)
 
 
-def test_a_scene_behind_the_eye_is_simply_not_seen():
+def test_a_scene_behind_the_eye_has_valid_clip_planes():
     near, far = Camera((0, 0, 5), (0, 0, 10)).clip_planes(UNIT)
     assert 0 < near < far
 

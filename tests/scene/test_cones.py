@@ -1,4 +1,4 @@
-"""The environment averaged over cones: exact where it can be, wide to narrow, and continuous over the map's edges."""
+"""The environment averaged over cones: exact cases, narrow and wide cones, continuity over the map's edges."""
 
 from itertools import pairwise
 
@@ -14,14 +14,14 @@ SKY = Environment.sky(sun_direction=(1.0, 0.8, -0.3), sun_angle=25)
 
 
 @pytest.mark.parametrize("color", [(0.0, 0.0, 0.0), (0.3, 0.6, 1.2)])
-def test_a_constant_environment_stays_exactly_that(color):
+def test_a_constant_environment_stays_exactly_constant(color):
     table = cones(Environment.constant(color))
     assert table.shape == (SLICES, TEXELS, TEXELS, 3)
     np.testing.assert_allclose(table, np.broadcast_to(np.float32(color), table.shape), rtol=1e-5)
 
 
 def test_the_widest_cone_is_irradiance_over_pi():
-    """Summed here over all cells of the map, texel by texel."""
+    """The expected value is a sum over all cells of the map."""
     values, directions, solid_angles = averaged(SKY.radiance, BLUR_CELLS)
     normal = octahedral_directions(TEXELS)[::7, ::5]
     cosine = np.maximum(np.einsum("abk,ijk->abij", normal, directions), 0)
@@ -40,19 +40,19 @@ def test_a_narrow_cone_is_brighter_towards_the_sun_and_a_wide_one_smoother():
     assert all(narrow > wide for narrow, wide in pairwise(spread))
 
 
-def test_the_border_goes_on_as_the_sphere_does():
-    """What lies a texel beyond an edge is near, on the sphere, to what lies at it."""
+def test_the_border_continues_the_map_on_the_sphere():
+    """A border texel is close, on the sphere, to the texel at the edge."""
     directions = bordered(octahedral_directions(TEXELS))
     assert directions.shape == (TEXELS + 2, TEXELS + 2, 3)
     np.testing.assert_array_equal(directions[1:-1, 1:-1], octahedral_directions(TEXELS))
-    # the map was cut open along the half circles x = 0 and z = 0: half way to the border's texels lies the cut
+    # the map is cut along the half circles x = 0 and z = 0; the cut is half way between the edge and the border
     x, _, z = np.moveaxis(directions, -1, 0)
     for one, other in ((x[0], x[1]), (x[-1], x[-2]), (z[:, 0], z[:, 1]), (z[:, -1], z[:, -2])):
         np.testing.assert_allclose((one + other)[1:-1], 0, atol=1e-12)
         assert np.abs(other).max() > 0.04
 
 
-def test_slices_stand_one_above_the_other():
+def test_slices_are_stacked_from_narrow_to_wide():
     stacked = Cones()(SKY)
     assert stacked.shape == (SLICES * (TEXELS + 2), TEXELS + 2, 3)
     np.testing.assert_array_equal(stacked[1 : TEXELS + 1, 1:-1], cones(SKY)[0])

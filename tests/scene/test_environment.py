@@ -26,7 +26,7 @@ def texel_directions(height: int, width: int) -> np.ndarray:
 
 
 def brute_force_irradiance(radiance: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """∫ L max(n·ω, 0) dω over the map's texels, without any spherical harmonics."""
+    """∫ L max(n·ω, 0) dω as a sum over the map's texels, without spherical harmonics."""
     height, width = radiance.shape[:2]
     directions = texel_directions(height, width)
     solid_angles = np.sin(np.pi * (np.arange(height) + 0.5) / height) * 2 * np.pi**2 / (height * width)
@@ -76,12 +76,12 @@ def test_glsl_uv_equals_numpy(gl):
     )
     poles = np.array([[1e-3, 1, 0], [0, -1, 1e-3]]) / np.sqrt(1 + 1e-6)
     directions = np.concatenate([random_directions(500), AXES, poles]).astype("f4")
-    gl.simple_framebuffer((1, 1)).use()  # transform feedback wants a complete one, even unused
+    gl.simple_framebuffer((1, 1)).use()  # transform feedback needs a complete framebuffer, even if unused
     result = gl.buffer(reserve=len(directions) * 2 * 4)
     gl.vertex_array(program, [(gl.buffer(directions.tobytes()), "3f", "direction")]).transform(result, mode=gl.POINTS)
     difference = np.frombuffer(result.read(), "f4").reshape(-1, 2) - uv_from_direction(directions)
     difference[:, 0] -= np.rint(difference[:, 0])  # u = 0 and u = 1 are the same column
-    difference[np.abs(directions[:, 1]) == 1, 0] = 0  # at the poles every u is right
+    difference[np.abs(directions[:, 1]) == 1, 0] = 0  # at the poles every u is correct
     np.testing.assert_allclose(difference, 0, atol=1e-6)  # a 200th of a texel of a 4096-wide map
 
 
@@ -103,7 +103,7 @@ def test_constant_maps_of_any_size_are_exact(size):
 
 
 def test_irradiance_of_a_linear_gradient_is_exact():
-    """L = 1 + d·a gives E(n) = π + 2π/3 n·a: bands 0 and 1 hold all of it."""
+    """L = 1 + d·a gives E(n) = π + 2π/3 n·a: bands 0 and 1 represent it completely."""
     axis = np.array([0.3, -0.5, 0.6])
     radiance = 1 + texel_directions(128, 256) @ axis
     environment = Environment(np.repeat(radiance[..., None], 3, axis=2))
@@ -112,7 +112,7 @@ def test_irradiance_of_a_linear_gradient_is_exact():
 
 
 def test_irradiance_of_a_cosine_lobe_is_near_brute_force():
-    """The lobe towards n itself: E(n) = 2π/3; three bands leave out at most 1 % of the greatest."""
+    """Towards the lobe's axis E = 2π/3. The error of three bands is at most 1 % of the greatest irradiance."""
     towards = np.array([0.6, 0.48, -0.64])
     lobe = np.maximum(texel_directions(128, 256) @ towards, 0)[..., None] * [1.0, 0.5, 2.0]
     found = Environment(lobe).irradiance(NORMALS)
@@ -122,7 +122,7 @@ def test_irradiance_of_a_cosine_lobe_is_near_brute_force():
 
 
 def test_irradiance_of_the_sky_is_near_brute_force():
-    """Three bands leave out at most 3/32 of ∫ L dω at any normal; of a sky with a sun below 2 % on average."""
+    """The error of three bands is at most 3/32 of ∫ L dω; for a sky with a sun it is below 2 % on average."""
     sky = Environment.sky(sun_direction=(1, 2, 0.5))
     normals = random_directions(200)
     expected = brute_force_irradiance(sky.radiance, normals)
@@ -132,7 +132,9 @@ def test_irradiance_of_the_sky_is_near_brute_force():
     assert error.mean() < 0.02 * expected.mean()
 
 
-@pytest.mark.parametrize(("height", "width"), [(700, 1501), (1024, 2048)])  # no multiple of the projection's, and one
+@pytest.mark.parametrize(
+    ("height", "width"), [(700, 1501), (1024, 2048)]
+)  # one size is a multiple of the projection's size
 def test_large_maps_are_averaged_not_sampled(height, width):
     """Stripes of single rows and columns, finer than the projection's cells, vanish from a gradient's irradiance."""
     axis = np.array([0.3, -0.5, 0.6])
@@ -154,7 +156,7 @@ def test_irradiance_is_never_negative():
 # --- the sky
 
 
-def test_sky_is_blue_above_and_bright_enough_to_expose_by():
+def test_the_sky_is_blue_above_and_exposes_a_surface_well():
     sky = Environment.sky()
     assert sky.radiance.dtype == np.float32
     top, bottom = sky.radiance[0, 0], sky.radiance[-1, 0]
@@ -165,7 +167,7 @@ def test_sky_is_blue_above_and_bright_enough_to_expose_by():
 
 
 @pytest.mark.parametrize("angle", [0.53, 6.0, 30.0])
-def test_the_sun_sends_what_its_radiance_and_angle_say(angle):
+def test_the_flux_of_the_sun_follows_from_its_radiance_and_angle(angle):
     towards = np.array([1.0, 1.0, -1.0])
     with_sun = Environment.sky(sun_direction=tuple(towards), sun_radiance=(100, 50, 10), sun_angle=angle).radiance
     sun = with_sun.astype(float) - Environment.sky().radiance
@@ -223,7 +225,7 @@ def test_wrong_shapes_are_refused(shape):
         Environment(np.ones(shape))
 
 
-def test_radiance_that_is_no_number_is_refused():
+def test_radiance_that_is_not_numeric_is_refused():
     with pytest.raises(SceneError, match="not an array of numbers"):
         Environment(np.full((1, 2, 3), "blue"))
 
@@ -291,14 +293,14 @@ def write_exr(path, radiance: np.ndarray) -> None:
 
 
 def angular_map(radiance, side: int) -> np.ndarray:
-    """(side, side, 3): `radiance` of -z turned by π r about y, and by the angle of the pixel about -z."""
+    """(side, side, 3): `radiance` of the direction -z, rotated by π r about y and by the pixel's angle about -z."""
     u, v = np.meshgrid((2 * np.arange(side) + 1) / side - 1, 1 - (2 * np.arange(side) + 1) / side)
     theta, phi = np.arctan2(v, u), np.pi * np.hypot(u, v)
     directions = np.stack([np.sin(phi) * np.cos(theta), np.sin(phi) * np.sin(theta), -np.cos(phi)], axis=-1)
     return np.where(phi[..., None] <= np.pi, radiance(directions), 0)
 
 
-def test_a_light_probe_shines_from_where_it_was_taken(tmp_path):
+def test_a_light_probe_has_the_radiance_of_each_direction(tmp_path):
     def radiance(directions):
         return np.stack([1 + directions[..., 0], 1 + directions[..., 1], 1 + directions[..., 2]], axis=-1)
 
@@ -307,7 +309,7 @@ def test_a_light_probe_shines_from_where_it_was_taken(tmp_path):
     assert probe.name == "probe.exr"
     assert probe.radiance.shape == (128, 256, 3)
     expected = radiance(texel_directions(128, 256))
-    off_the_rim = expected[..., 2] < 1.95  # all of the rim is one direction, +z
+    off_the_rim = expected[..., 2] < 1.95  # the whole rim is the direction +z
     np.testing.assert_allclose(probe.radiance[off_the_rim], expected[off_the_rim], atol=0.03)
     np.testing.assert_allclose(probe.irradiance(np.eye(3)), radiance(np.eye(3) * 2 / 3) * np.pi, rtol=0.02)
 

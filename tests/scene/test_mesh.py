@@ -1,4 +1,4 @@
-"""What a mesh refuses, repairs and makes."""
+"""Meshes: the errors, the repairs, and the generated normals."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def test_the_callers_arrays_stay_writeable():
     vertices[0] = normals[0] = 5
 
 
-def test_normals_are_made_and_attributes_follow_the_split():
+def test_normals_are_generated_and_attributes_follow_the_split():
     vertices = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     mesh = Mesh(vertices, faces, uv=vertices[:, :2], colors=np.c_[vertices, np.ones(4)])
@@ -44,7 +44,7 @@ def test_given_normals_are_kept_and_nothing_is_split():
     assert len(mesh.vertices) == 4
 
 
-def test_a_normal_of_no_length_has_them_all_made():
+def test_a_normal_without_length_has_all_normals_generated():
     normals = np.array([[0, 1, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0]], float)
     np.testing.assert_allclose(Mesh(SQUARE, TWO, normals=normals).normals, [[0, 0, 1]] * 4)
 
@@ -124,7 +124,7 @@ def test_texture_pixels(pixels):
         Texture(pixels, "bark")
 
 
-def test_a_texture_without_uv_is_left_out_and_said():
+def test_a_texture_without_uv_is_left_out_with_a_notice():
     texture = Texture(np.full((2, 2, 4), 255, np.uint8), "checks")
     with pytest.warns(Notice, match="a texture but no uv"):
         mesh = Mesh(np.eye(3), [[0, 1, 2]], material=Material((0.2, 0.4, 0.6), texture))

@@ -1,4 +1,4 @@
-"""Environments blurred to a sample's solid angle: energy is kept, the lobe is as wide as it says, GLSL agrees."""
+"""Environments blurred to a sample's solid angle: the energy is kept, the lobe has its width, GLSL agrees."""
 
 from itertools import pairwise
 
@@ -8,17 +8,17 @@ import pytest
 from aolab import Environment
 from aolab.scene.prefiltered import octahedral_directions, octahedral_uv, prefiltered
 
-LOBES = [0.05, 0.4, np.pi / 4, 2 * np.pi]  # steradians; π/4 is a sample's with N = 8
+LOBES = [0.05, 0.4, np.pi / 4, 2 * np.pi]  # steradians; π/4 is the solid angle of a sample with N = 8
 
 
 def octahedral_solid_angles(texels: int) -> np.ndarray:
-    """(texels, texels) steradians: du dv of the square at |x| + |y| + |z| = 1, seen from its distance there."""
+    """(texels, texels) steradians: du dv of the square, projected from |x| + |y| + |z| = 1 onto the sphere."""
     directions = octahedral_directions(texels)
     return (2 / texels) ** 2 * np.abs(directions).sum(axis=-1) ** 3
 
 
 def one_cell(row: int, column: int) -> Environment:
-    """A map of the blur's own cells, black but for one, which sends a flux of 1: ∫ L dω = 1."""
+    """A black map of the blur's resolution with one bright cell of flux ∫ L dω = 1."""
     height, width = 64, 128
     radiance = np.zeros((height, width, 3), np.float32)
     cosine = np.cos(np.pi * np.array([row, row + 1]) / height)
@@ -27,7 +27,7 @@ def one_cell(row: int, column: int) -> Environment:
 
 
 @pytest.mark.parametrize("solid_angle", [0.0, *LOBES])
-def test_a_constant_environment_stays_exactly_that(solid_angle):
+def test_a_constant_environment_stays_exactly_constant(solid_angle):
     color = np.array((0.3, 0.6, 1.2), np.float32)
     pixels = prefiltered(Environment.constant(tuple(color)), solid_angle)
     assert pixels.dtype == np.float32
@@ -36,8 +36,8 @@ def test_a_constant_environment_stays_exactly_that(solid_angle):
 
 @pytest.mark.parametrize("solid_angle", LOBES)
 @pytest.mark.parametrize("cell", [(2, 5), (31, 0), (40, 90)], ids=["near the pole", "on the seam", "below"])
-def test_a_lobe_keeps_the_flux_and_is_as_wide_as_it_says(solid_angle, cell):
-    """Of a source of flux 1 the blurred map is the lobe f itself: ∫ f dω = 1, and 1 / ∫ f² dω is its solid angle.
+def test_a_lobe_keeps_the_flux_and_has_its_solid_angle(solid_angle, cell):
+    """The blurred map of a source of flux 1 is the lobe f: ∫ f dω = 1, and 1 / ∫ f² dω is its solid angle.
 
     For f = κ exp(κ (cosθ - 1)) / (2π (1 - exp(-2κ))) the latter is 4π tanh(κ) / κ.
     """
@@ -49,7 +49,7 @@ def test_a_lobe_keeps_the_flux_and_is_as_wide_as_it_says(solid_angle, cell):
     assert 1 / (lobe**2 * solid_angles).sum() == pytest.approx(solid_angle * np.tanh(kappa), rel=0.1)
 
 
-def test_without_a_lobe_every_texel_is_the_maps_own():
+def test_without_a_lobe_every_texel_is_a_texel_of_the_map():
     """A map red to the right (+x), blue to the left, green in the lower half."""
     radiance = np.zeros((64, 128, 3), np.float32)
     radiance[:, 64:, 0] = radiance[:, :64, 2] = 1
@@ -58,7 +58,7 @@ def test_without_a_lobe_every_texel_is_the_maps_own():
     x, y, _ = np.moveaxis(octahedral_directions(len(pixels)), -1, 0)
     np.testing.assert_array_equal(pixels[..., 0], x > 0)
     np.testing.assert_array_equal(pixels[..., 2], x < 0)
-    np.testing.assert_array_equal(pixels[..., 1], y < 1e-12)  # the horizon itself belongs to the row below it
+    np.testing.assert_array_equal(pixels[..., 1], y < 1e-12)  # the horizon belongs to the row below it
 
 
 def test_a_wider_lobe_is_a_smoother_map():
@@ -70,7 +70,7 @@ def test_a_wider_lobe_is_a_smoother_map():
 # --- the octahedral map
 
 
-def test_every_texels_direction_leads_back_to_its_centre():
+def test_the_uv_of_a_texels_direction_is_its_centre():
     for texels in (1, 2, 8, 33):
         directions = octahedral_directions(texels)
         np.testing.assert_allclose(np.linalg.norm(directions, axis=-1), 1)
@@ -93,11 +93,11 @@ def test_every_texels_direction_leads_back_to_its_centre():
         ((-1, -1, 1), (1 / 6, 5 / 6)),
     ],
 )
-def test_where_directions_lie_on_the_map(direction, uv):
+def test_known_directions_have_known_uv(direction, uv):
     np.testing.assert_allclose(octahedral_uv(np.array(direction)), uv)
 
 
-def test_the_shader_finds_the_same_place(glsl):
+def test_the_shader_computes_the_same_uv(glsl):
     directions = np.random.default_rng(1).normal(size=(2000, 3)) * 10.0 ** np.linspace(-3, 3, 2000)[:, None]
     axes = np.array([(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1), (1, -1, 0), (0, -1, -1)])
     rows = np.pad(np.concatenate([directions, axes]), ((0, 0), (0, 1)))

@@ -1,4 +1,4 @@
-"""Scenes: where things are, what is filled in, and what is refused."""
+"""Scenes: bounds, defaults for missing parts, and errors."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def moved(x: float = 0, y: float = 0, z: float = 0, scale: float = 1) -> np.ndar
     return matrix
 
 
-def test_bounds_and_triangles_are_those_of_all_instances():
+def test_bounds_and_triangles_cover_all_instances():
     scene = Scene((Instance(BOX), Instance(BOX, moved(x=10, scale=2))))
     np.testing.assert_allclose(scene.bounds, [[0, 0, 0], [12, 4, 6]])
     assert scene.triangles == 24
@@ -25,7 +25,7 @@ def test_bounds_and_triangles_are_those_of_all_instances():
     np.testing.assert_allclose(triangles[12:].reshape(-1, 3), triangles[:12].reshape(-1, 3) * 2 + (10, 0, 0), atol=1e-5)
 
 
-def test_what_is_missing_is_filled_in():
+def test_missing_camera_lights_and_environment_get_defaults():
     bare = Scene((Instance(BOX),))
     assert bare.camera is not None
     assert bare.environment is not None

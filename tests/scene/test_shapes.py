@@ -32,7 +32,7 @@ def test_lathe_of_a_cylinder_is_a_prism():
 
 
 @pytest.mark.parametrize("order", [1, -1])
-def test_skins_face_outwards_whatever_the_order_of_the_rings(order):
+def test_skins_face_outwards_for_any_order_of_the_rings(order):
     rings = np.array([ring(square(8), 0), ring(square(8), 1)])[::order]
     assert volume(loft(rings, STONE)) == pytest.approx(4)
 
@@ -51,10 +51,10 @@ def test_caps_of_a_ribbon_stay_inside_it():
     ribbon = np.concatenate([front, (front - (0, 0, 0.01))[::-1]])
     mesh = loft(np.array([ribbon, ribbon + np.array((0, 1, 0))]), STONE)
     assert volume(mesh) == pytest.approx(0.01, rel=1e-3)
-    assert trimesh.Trimesh(mesh.vertices, mesh.faces).area < 2 * 5.5  # both sides; a fan's cap would add its own
+    assert trimesh.Trimesh(mesh.vertices, mesh.faces).area < 2 * 5.5  # both sides; a fan-shaped cap would add its area
 
 
-def test_colors_are_a_ring_each():
+def test_colors_are_given_per_ring():
     mesh = loft(np.array([ring(square(4), 0), ring(square(4), 1)]), STONE, colors=np.array([(1, 0, 0), (0, 0, 1)]))
     assert mesh.colors is not None
     np.testing.assert_array_equal(mesh.colors[:, 0], mesh.vertices[:, 1] == 0)

@@ -1,4 +1,4 @@
-"""The scenes of scenes/: they load, are sound as geometry, keep their promises, and refuse what is out of range."""
+"""The scenes of scenes/: they load, have valid geometry, match their descriptions, and refuse values out of range."""
 
 import subprocess
 import sys
@@ -12,7 +12,7 @@ import aolab
 from aolab.loading import scene_names
 from aolab.scene.scene import Scene
 
-# triangles at the default parameters, as a user pays for them
+# number of triangles at the default parameters, least and greatest
 TRIANGLES = {
     "atrium": (80_000, 160_000),
     "boxes": (36, 1_000),
@@ -35,7 +35,7 @@ names = pytest.mark.parametrize("name", sorted(TRIANGLES))
 @pytest.fixture(scope="module")
 def scenes() -> dict[str, Scene]:
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # among them Notices of degenerate triangles
+        warnings.simplefilter("error")  # including Notices of degenerate triangles
         return {name: aolab.load(name) for name in TRIANGLES}
 
 
@@ -53,7 +53,9 @@ def test_size_lights_and_camera(name, scenes):
     least, greatest = TRIANGLES[name]
     assert least <= scene.triangles <= greatest
     assert scene.lights
-    assert scene.environment.irradiance([(0.0, 1.0, 0.0)]).min() > 0.01  # ambient light, or nothing is to be seen
+    assert (
+        scene.environment.irradiance([(0.0, 1.0, 0.0)]).min() > 0.01
+    )  # ambient light, so that unlit surfaces are visible
     axis = np.subtract(scene.camera.target, scene.camera.eye)
     towards = scene.bounds.mean(axis=0) - scene.camera.eye
     assert axis @ towards > 0
@@ -79,7 +81,7 @@ def test_normals_agree_with_the_faces(name, scenes):
 
 
 @names
-def test_albedo_is_that_of_real_surfaces(name, scenes):
+def test_albedo_is_in_the_range_of_real_surfaces(name, scenes):
     for mesh in meshes(scenes[name]):
         albedo = np.array(mesh.material.base_color)
         if mesh.colors is not None:
@@ -101,7 +103,7 @@ def test_values_out_of_range_are_refused(name):
 
 
 def corners(scene: Scene) -> np.ndarray:
-    """Every vertex of the scene in the world, in one order whatever the instances' order."""
+    """Every vertex of the scene in world space, sorted, so that the order of instances has no effect."""
     parts = [i.mesh.vertices @ i.world_from_local[:3, :3].T + i.world_from_local[:3, 3] for i in scene.instances]
     points = np.unique(np.concatenate(parts).round(4) + 0.0, axis=0)
     return points
@@ -141,7 +143,7 @@ def test_colonnade_hides_the_pink_column_from_its_camera(scenes):
     assert len(scene.instances) == len(without.instances) + 1
     frames = [aolab.render(one, "none", size=(640, 360)) for one in (scene, without)]
     np.testing.assert_array_equal(frames[0]["albedo"], frames[1]["albedo"])
-    assert (frames[0]["direct"] < frames[1]["direct"]).any()  # its shadow is seen
+    assert (frames[0]["direct"] < frames[1]["direct"]).any()  # the shadow of the hidden column
     from_above = aolab.Camera((0, 12, -2), (0, 0, -3))
     above = [aolab.render(one, "none", camera=from_above, size=(64, 36))["albedo"] for one in (scene, without)]
     assert not np.array_equal(*above)
@@ -151,19 +153,19 @@ def placements(time: float) -> np.ndarray:
     return np.array([i.world_from_local for i in aolab.load("toasters", time=time).instances])
 
 
-def test_toasters_move_their_transforms_only():
+def test_only_the_transforms_of_toasters_change_with_time():
     now, later = aolab.load("toasters", time=0.3), aolab.load("toasters", time=1.7)
     assert [i.mesh for i in now.instances] == [i.mesh for i in later.instances]
     assert not np.allclose(placements(0.3), placements(1.7))
 
 
 @pytest.mark.parametrize("time", [0.0, 0.49, 1.23, 2.5, 3.97])
-def test_toasters_move_continuously_and_come_back(time):
+def test_toasters_move_continuously_and_periodically(time):
     np.testing.assert_allclose(placements(time + 4), placements(time), atol=1e-9)
     assert np.abs(placements(time + 1e-4) - placements(time)).max() < 5e-3  # at most 50 units a second
 
 
-def test_toasters_are_never_below_the_floor_nor_in_one_another():
+def test_toasters_stay_above_the_floor_and_apart():
     for time in np.linspace(0, 4, 33):
         shells = [i for i in aolab.load("toasters", time=float(time), count=10).instances if i.mesh.name == "shell"]
         middle = np.array([i.world_from_local[:3, 3] for i in shells])
@@ -172,7 +174,7 @@ def test_toasters_are_never_below_the_floor_nor_in_one_another():
         assert middle[:, 1].min() >= -0.011
 
 
-def test_a_scene_asked_for_by_name_needs_no_trimesh():
-    """Scenes are built from `aolab.scene.shapes`, without trimesh, whose import costs a third of a second."""
+def test_a_scene_loaded_by_name_does_not_import_trimesh():
+    """Scenes are built from `aolab.scene.shapes`, without trimesh: its import takes a third of a second."""
     code = "import sys, aolab; aolab.load('cornell'); sys.exit('trimesh' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
