@@ -1,11 +1,13 @@
-"""Sphinx: MyST pages, of which some are notebooks that run when the documentation is built. `make docs` builds it."""
+"""Sphinx configuration. Some of the MyST pages are notebooks: `make docs` runs them and caches their outputs."""
 
 import sys
+from hashlib import sha256
 from pathlib import Path
+from shutil import rmtree
 
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
-from aolab import __version__
+from aolab import __version__, paths
 
 project = "aolab"
 author = "the aolab authors"
@@ -15,9 +17,17 @@ version = release = __version__
 extensions = ["myst_nb", "sphinx.ext.autodoc", "docstrings", "mathml", "tables"]
 exclude_patterns = ["_build", "_ext", "generated"]
 
-# Pictures and figures are made here and now, by the code that stands above them; none is kept in the repository.
-nb_execution_mode = "auto"
-nb_execution_timeout = 120
+# The pages' code computes their pictures and figures; none of them is in the repository. A page runs again if its cells
+# or any source of the package have changed. There is no time limit: a busy machine is no error.
+folders = (Path(paths.__file__).parent, paths.glsl(), paths.scenes())
+sources = sorted(path for folder in folders for path in folder.rglob("*.*") if path.suffix != ".pyc")
+caches = Path(__file__).parent / "_build" / "pages"
+cache = caches / sha256(b"".join(path.read_bytes() for path in sources)).hexdigest()[:16]
+for outdated in set(caches.glob("*")) - {cache}:
+    rmtree(outdated)
+nb_execution_cache_path = str(cache)
+nb_execution_mode = "cache"
+nb_execution_timeout = -1
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True

@@ -1,4 +1,4 @@
-"""Equations as MathML, which browsers draw by themselves: no script, no network, and a screen reader can read it."""
+"""Equations as MathML: browsers render it without scripts or network, and screen readers can read it."""
 
 from docutils import nodes
 from latex2mathml.converter import convert
@@ -13,11 +13,11 @@ def inline(translator: HTML5Translator, node: nodes.math) -> None:
 
 
 def block(translator: HTML5Translator, node: nodes.math_block) -> None:
+    """`aolab.css` puts the number beside the formula, which scrolls by itself."""
     translator.body.append(translator.starttag(node, "div", CLASS="math equation"))
+    translator.body.append(f'<div class="formula">{convert(node.astext(), display="block")}</div>')
     if node["number"]:
-        number = get_node_equation_number(translator, node)
-        translator.body.append(f'<span class="eqno">({number})</span>')
-    translator.body.append(convert(node.astext(), display="block"))
+        translator.body.append(f'<span class="eqno">({get_node_equation_number(translator, node)})</span>')
     translator.body.append("</div>\n")
     raise nodes.SkipNode
 
