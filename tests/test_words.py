@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("aolab", "docs", "examples", "glsl", "scenes", "tests", "tools")
-SKIPPED = ("_build", "generated", "jupyter_execute")
+SKIPPED = ("_build", "generated")
 
 # The greatest count that is allowed, for folders that are not rewritten yet. A folder that is not listed has 0.
 BOUND = {
