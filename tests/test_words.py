@@ -24,7 +24,7 @@ BOUND = {
     "aolab/gl": 3,
     "aolab/loading": 11,
     "aolab/measures": 15,
-    "aolab/modules": 17,
+    "aolab/modules": 15,
     "aolab/papers": 2,
     "aolab/papers/s3ho": 4,
     "aolab/papers/ssdo": 5,

@@ -1,10 +1,10 @@
-"""No occlusion: what every method is compared with first."""
+"""No occlusion: the baseline for every method."""
 
 from .base import Module
 
 
 class Unoccluded(Module):
-    """Everything is open: visibility is 1, and ambient light reaches every corner."""
+    """Every direction is open: the visibility is 1, and ambient light reaches every corner."""
 
     name = "none"
     title = "No occlusion"

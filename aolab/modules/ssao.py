@@ -7,8 +7,8 @@ from .parameters import parameter
 class SSAO(Marched):
     """The share of cosine-distributed directions in which the depth buffer blocks nothing within the radius.
 
-    Directions are marched in `steps` points, jittered along the way; with many steps and `accumulate`, this converges
-    to rays of length `radius` against the one layer that the camera sees.
+    Each direction is tested at `steps` points with varying offsets. With many steps and `accumulate`, the result
+    converges to rays of length `radius` against the depth layer that the camera sees.
     """
 
     name = "ssao"
@@ -16,4 +16,6 @@ class SSAO(Marched):
     paper = "Mittring 2007, Finding Next Gen: CryEngine 2; hemisphere form: Filion and McNaughton 2008"
     shader = "ssao.frag"
 
-    power: float = parameter(1.0, "Contrast: visibility is raised to it; 1 is the physical value.", gt=0, le=8)
+    power: float = parameter(
+        1.0, "Contrast: the visibility is raised to this power; 1 is the physical value.", gt=0, le=8
+    )

@@ -1,4 +1,4 @@
-"""Screen-space bent normals and cones: the mean open direction, and how widely it is open."""
+"""Screen-space bent normals and cones: the mean open direction, and the width of the open cone around it."""
 
 from typing import ClassVar, Literal
 
@@ -16,19 +16,19 @@ def _is_uniform(frame: Readable) -> bool:
 
 
 def _bent_normal(frame: Readable, raw: str) -> np.ndarray:
-    """The mean open direction, world space; 0 where nothing is open, and in the background."""
+    """The mean open direction, world space; 0 if no direction is open, and in the background."""
     name = f"blocked_direction{raw}"
     blocked = frame[name]
     open = 1 - blocked[..., 3:]
     whole = np.float32(1 / 2 if _is_uniform(frame) else 2 / 3)
     bent = whole * frame.world_normal(name) - blocked[..., :3]
     mean = bent / np.maximum(open, np.float32(1e-4))
-    mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1)  # of few samples it may come out longer
+    mean /= np.maximum(np.linalg.norm(mean, axis=-1, keepdims=True), 1)  # with few samples it may be longer than 1
     return np.where(open > 1e-4, mean, np.float32(0))
 
 
 def _visibility(frame: Readable, raw: str) -> np.ndarray:
-    """(1/π) ∫ V cosθ dω; of uniform directions it is the part of the mean direction along the normal."""
+    """(1/π) ∫ V cosθ dω; for uniform directions, from the component of the mean direction along the normal."""
     name = f"blocked_direction{raw}"
     blocked = frame[name]
     if _is_uniform(frame):
@@ -37,11 +37,11 @@ def _visibility(frame: Readable, raw: str) -> np.ndarray:
 
 
 class SSBN(Marched):
-    """A cone around the mean open direction stands for all that is open; the environment is looked up in it.
+    """A cone around the mean open direction represents all open directions; its light is the environment's mean.
 
-    Its map is averaged over cones beforehand, in eight sizes. The estimate knows no light, but a new environment needs
-    new averages. The same bent normal means the same light: with the paper's `uniform` weighting, the two sides of a
-    corner get nearly one colour.
+    The environment is averaged over cones of eight sizes in advance. The estimate does not depend on the light, but a
+    new environment needs new averages. Equal bent normals give equal light: with the paper's `uniform` weighting, both
+    sides of a corner have nearly the same colour.
     """
 
     name = "ssbn"
@@ -52,7 +52,7 @@ class SSBN(Marched):
     derived: ClassVar = {"bent_normal": _bent_normal, "visibility": _visibility}
 
     weighting: Literal["cosine", "uniform"] = parameter(
-        "cosine", "How directions count in the bent normal: by their cosine, or all alike, as the paper's."
+        "cosine", "Weights of directions in the bent normal: their cosine, or uniform as in the paper."
     )
 
     def passes(self) -> list[Pass]:
