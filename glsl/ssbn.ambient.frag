@@ -12,6 +12,7 @@
 // Output:  ambient, linear RGB radiance: albedo × visibility × mean radiance.
 
 #include "lib/octahedral.glsl"
+#include "lib/constants.glsl"
 
 const bool uniform_weights;
 const int cone_slices;     // slices of the table, from the narrowest cone to the hemisphere
@@ -50,7 +51,7 @@ void main() {
     float size = length(bent) / max(1.0 - blocked.w, 1e-4);
     float k = clamp(1.5 * size - 1.0, 0.0, 0.5);  // c² - k c - k = 0
     float cosine = uniform_weights ? clamp(2.0 * size - 1.0, 0.0, 1.0) : 0.5 * (k + sqrt(k * k + 4.0 * k));
-    float angle = acos(min(cosine, 1.0)) * (2.0 / 3.14159265358979);
+    float angle = acos(min(cosine, 1.0)) * (2.0 / PI);
     // nothing open: b has no direction, and visibility is 0 in any direction
     vec3 direction = dot(bent, bent) > 1e-12 ? bent : worldNormal;
     ambient = vec4(surfaceAlbedo.rgb * visibility * radianceInCone(direction, angle), 1.0);

@@ -16,10 +16,11 @@ import small_scenes
 import aolab
 from aolab import paths
 from aolab.gl import context, texture
+from aolab.gl.bindings import Bindings
 from aolab.gl.program import Programs
 from aolab.gl.texture import Pool
 from aolab.modules.passes import Pass
-from aolab.pipeline.pass_runner import Painter
+from aolab.pipeline.pass_runner import PassRunner
 
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
 
@@ -85,7 +86,7 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
 
     Runs the statements once for each row of `x` (n, 4) and returns `result` (n, 4), both float32; keywords are vec4s.
     """
-    painter = Painter(Programs(), Pool(), {})
+    runner = PassRunner(Programs(), Pool())
 
     def evaluate(include: str, statements: str, x: np.ndarray, **uniforms: Sequence[float]) -> np.ndarray:
         x = np.asarray(x, np.float32)
@@ -97,8 +98,8 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
             f"{statements}\nvalue = result;\n}}\n"
         )
         size = len(x), 1
-        rows = {"rows": texture.make(size, "RGBA32F", x.tobytes())}
-        made = painter.run(Pass("glsl", shader, {"value": "RGBA32F"}), rows, uniforms, size)
+        given = Bindings("the test", {"rows": texture.make(size, "RGBA32F", x.tobytes())}, uniforms)
+        made = runner.run(Pass("glsl", shader, {"value": "RGBA32F"}), [given], size)
         return texture.read(made["value"])[0]
 
     return evaluate

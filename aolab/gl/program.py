@@ -1,28 +1,33 @@
 """Programs: compiled once for each set of constants, kept, and compiled anew when a file of theirs changes."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import moderngl
 
 from ..errors import ShaderError, suggestion
-from . import context
-from .source import Constant, Source, assemble
+from . import context, raw
+from .source import Constant, Source, assemble, included
 
 FULLSCREEN = "pipeline/fullscreen.vert"
+MAX_SAMPLERS = 16  # OpenGL 3.3 guarantees this many to a fragment shader; some drivers grant more, macOS does not
 
 
 @dataclass
 class Program:
-    """A linked program with its uniforms by name; `files` are the sources it was made of, with their time stamps."""
+    """A linked program with its uniforms by name.
+
+    `files` are its sources with their time stamps; `locations` are those of its `out` variables, from 0 on.
+    """
 
     gl: moderngl.Program
     name: str
     request: "Request"
     files: dict[Path, int]
     constants: set[str]
+    locations: dict[str, int]
     uniforms: dict[str, moderngl.Uniform] = field(init=False)
     samplers: list[str] = field(init=False)
     fullscreen: moderngl.VertexArray | None = None
@@ -31,6 +36,11 @@ class Program:
         members = {name: self.gl[name] for name in self.gl}
         self.uniforms = {name: member for name, member in members.items() if isinstance(member, moderngl.Uniform)}
         self.samplers = [name for name, uniform in self.uniforms.items() if _is_sampler(uniform)]
+        count = sum(self.uniforms[name].array_length for name in self.samplers)
+        if count > MAX_SAMPLERS:
+            raise ShaderError(
+                f"{self.name} reads {count} textures; OpenGL 3.3 guarantees {MAX_SAMPLERS}: {', '.join(self.samplers)}"
+            )
 
     def set(self, values: Mapping[str, object]) -> None:
         """Set every uniform that is not a sampler from `values`; one that nothing gives is an error."""
@@ -68,16 +78,22 @@ def _stamp(path: Path) -> int:
 
 @dataclass(frozen=True)
 class Request:
-    """What a program is made of. `constants` are on offer: a shader takes those that it declares."""
+    """What a program is made of. `constants` are on offer: a shader takes those that it declares.
+
+    `outputs` are the `out` variables that are drawn, in the order of their locations; None checks none of them.
+    `optional` are `out` variables that the shader may have besides.
+    """
 
     vertex: str
     fragment: str
     constants: Mapping[str, Constant]
     aliases: Mapping[str, str]
+    outputs: tuple[str, ...] | None
+    optional: frozenset[str]
 
     @property
     def sources(self) -> tuple[object, ...]:
-        return self.vertex, self.fragment, tuple(sorted(self.aliases.items()))
+        return self.vertex, self.fragment, tuple(sorted(self.aliases.items())), self.outputs
 
 
 class Programs:
@@ -88,6 +104,7 @@ class Programs:
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
+        self._included: dict[str, frozenset[str]] = {}
 
     def get(
         self,
@@ -95,13 +112,26 @@ class Programs:
         constants: Mapping[str, Constant] | None = None,
         aliases: Mapping[str, str] | None = None,
         vertex: str = FULLSCREEN,
+        outputs: Sequence[str] | None = None,
+        optional: Collection[str] = (),
     ) -> Program:
-        """The program for these sources, compiled when first asked for. Raises `ShaderError`."""
-        request = Request(vertex, fragment, constants or {}, aliases or {})
+        """The program for these sources, compiled when first asked for. Raises `ShaderError`.
+
+        `outputs` names the `out` variables that are drawn; each must be written, and no other may be there unless it is
+        `optional`. More samplers than OpenGL 3.3 guarantees are an error on every driver.
+        """
+        wanted = None if outputs is None else tuple(outputs)
+        request = Request(vertex, fragment, constants or {}, aliases or {}, wanted, frozenset(optional))
         if request.sources not in self._declared:
             return self._keep(_compile(request))
         key = self._key(request)
         return self._programs[key] if key in self._programs else self._keep(_compile(request))
+
+    def includes(self, shader: str, name: str) -> bool:
+        """Whether the shader includes the file `name`, directly or through another file."""
+        if shader not in self._included:
+            self._included[shader] = included(shader)
+        return name in self._included[shader]
 
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
         """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay.
@@ -120,6 +150,7 @@ class Programs:
         for program in fresh:
             self._keep(program)
         self.generation += bool(fresh)
+        self._included.clear()
         return sorted({program.name for program in fresh})
 
     def _key(self, request: Request) -> tuple[object, ...]:
@@ -137,11 +168,38 @@ def _compile(request: Request) -> Program:
     vertex = assemble(request.vertex, request.constants, request.aliases)
     fragment = assemble(request.fragment, request.constants, request.aliases)
     stamps = {path: _stamp(path) for path in vertex.files | fragment.files}
+    locations = {name: location for location, name in enumerate(request.outputs or ()) if "[" not in name}
     try:
-        linked = context.get().program(vertex_shader=vertex.text, fragment_shader=fragment.text)
+        linked = context.get().program(
+            vertex_shader=vertex.text, fragment_shader=fragment.text, fragment_outputs=locations
+        )
     except moderngl.Error as error:
         raise ShaderError(_explain(str(error), vertex, fragment)) from None
-    return Program(linked, fragment.name, request, stamps, vertex.constants | fragment.constants)
+    constants = vertex.constants | fragment.constants
+    return Program(linked, fragment.name, request, stamps, constants, _locations(linked, request, fragment))
+
+
+def _locations(linked: moderngl.Program, request: Request, fragment: Source) -> dict[str, int]:
+    """{out variable: location} of the request's outputs, as the driver has linked them: a `layout` decides first."""
+    if request.outputs is None:
+        return {}
+    declared = fragment.outs
+    found = {name: raw.frag_data_location(linked, name) for name in request.outputs}
+    for name, location in found.items():
+        if location < 0:
+            known = name.partition("[")[0] in declared
+            reason = "is never written" if known else f"is missing{suggestion(name, declared)}"
+            raise ShaderError(f"{fragment.name}: the 'out' variable '{name}' {reason}")
+    drawn = {name.partition("[")[0] for name in found}
+    for name in declared:
+        if name not in drawn | request.optional and raw.frag_data_location(linked, name) >= 0:
+            raise ShaderError(
+                f"{fragment.name}: the 'out' variable '{name}' is none of the pass's outputs{suggestion(name, found)}"
+            )
+    if sorted(found.values()) != list(range(len(found))):
+        at = ", ".join(f"'{name}' at {location}" for name, location in found.items())
+        raise ShaderError(f"{fragment.name}: locations of 'out' variables must be 0 to {len(found) - 1}: {at}")
+    return found
 
 
 def _explain(message: str, vertex: Source, fragment: Source) -> str:

@@ -14,6 +14,9 @@ _INCLUDE = re.compile(r'^\s*#\s*include\b\s*(?:"([^"]+)")?')
 _CONSTANT = re.compile(r"^(\s*const\s+(int|float|bool|uint)\s+(\w+)\s*);(.*)$")
 _CONDITION = re.compile(r"^\s*#\s*(?:if|elif)\b(.*)$")
 _DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+# an `out` of the shader, not of a function: it ends in a semicolon and has no parenthesis beyond its layout
+_OUT = re.compile(r"^\s*(?:layout\s*\([^)]*\)\s*)?out\s+(?:(?:low|medium|high)p\s+)?\w+\s+([^;(){}]+);", re.MULTILINE)
 
 Constant = bool | int | float
 
@@ -27,6 +30,12 @@ class Source:
     lines: list[tuple[str, int]]
     files: set[Path] = field(default_factory=set)
     constants: set[str] = field(default_factory=set)
+
+    @property
+    def outs(self) -> list[str]:
+        """The names of the shader's `out` variables, in the order of their declarations; an array by its bare name."""
+        declared = ",".join(_OUT.findall(_COMMENT.sub("", self.text)))
+        return re.findall(r"(\w+)\s*(?:\[[^\]]*\])?\s*(?:,|$)", declared)
 
     def locate(self, message: str) -> str:
         """A driver's error message with `glsl/FILE:LINE` and the line itself in place of the driver's own count."""
@@ -52,18 +61,39 @@ def assemble(
     """Resolve a shader's includes and fill in its constants.
 
     `shader` is a file under glsl/ ("ssao.frag") or GLSL text (anything with a line break). A line
-    `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the file
-    that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a constant that is not given.
+    `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the
+    file, or to the GLSL text, that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a
+    constant that is not given.
     """
     builder = _Builder(dict(constants or {}), dict(aliases or {}))
-    is_text = "\n" in shader
     builder.emit(VERSION, "glsl", 0)
-    if is_text:
+    if is_text(shader):
         builder.add("<inline>", shader, [])
     else:
         builder.include(shader, [], f"shader '{shader}'")
-    name = "<inline>" if is_text else f"glsl/{shader}"
+    name = "<inline>" if is_text(shader) else f"glsl/{shader}"
     return Source(name, "\n".join(builder.text) + "\n", builder.lines, builder.files, builder.used)
+
+
+def is_text(shader: str) -> bool:
+    """Whether `shader` is GLSL text; otherwise it is the name of a file under glsl/."""
+    return "\n" in shader
+
+
+def included(shader: str) -> frozenset[str]:
+    """The names of all includes of a shader, at any depth. A name without a file, as of an alias, is not followed."""
+    found: set[str] = set()
+    waiting = [shader]
+    while waiting:
+        one = waiting.pop()
+        path = paths.glsl() / one if not is_text(one) else None
+        if path is not None and not path.is_file():
+            continue
+        text = one if path is None else path.read_text(encoding="utf-8")
+        names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
+        waiting += names - found
+        found |= names
+    return frozenset(found)
 
 
 class _Builder:
@@ -73,6 +103,7 @@ class _Builder:
         self.lines: list[tuple[str, int]] = []
         self.files: set[Path] = set()
         self.used: set[str] = set()
+        self.texts: set[str] = set()
         self.defined: set[str] = set()
 
     def emit(self, text: str, file: str, line: int) -> None:
@@ -80,7 +111,12 @@ class _Builder:
         self.lines.append((file, line))
 
     def include(self, name: str, chain: list[str], where: str) -> None:
-        name = self.aliases.get(name, name)
+        alias, name = name, self.aliases.get(name, name)
+        if is_text(name):
+            if alias not in self.texts:  # once only
+                self.texts.add(alias)
+                self.add(f"<{alias}>", name, chain)
+            return
         root = paths.glsl().resolve()
         path = (root / name).resolve()
         if not path.is_relative_to(root) or not path.is_file():

@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import GpuMemoryError, ParameterError, suggestion
 from . import context
 
-# name: (components, moderngl dtype); "f2" and "f4" are half and single floats, "f1" is normalised bytes
+# name: (components, moderngl dtype); "f2", "f4": half and single floats; "f1": normalised bytes; "u4": whole numbers
 FORMATS = {
     "R8": (1, "f1"),
     "RGBA8": (4, "f1"),
@@ -18,9 +18,18 @@ FORMATS = {
     "RG16F": (2, "f2"),
     "RGBA16F": (4, "f2"),
     "R32F": (1, "f4"),
+    "RG32F": (2, "f4"),
     "RGBA32F": (4, "f4"),
+    "R32UI": (1, "u4"),
+    "RGBA32UI": (4, "u4"),
 }
-_BYTES = {"f1": 1, "f2": 2, "f4": 4}
+# moderngl dtype: as it is stored, as `read` returns it
+_DTYPES = {
+    "f1": (np.uint8, np.uint8),
+    "f2": (np.float16, np.float32),
+    "f4": (np.float32, np.float32),
+    "u4": (np.uint32, np.uint32),
+}
 Size = tuple[int, int]
 Depth = moderngl.Texture | moderngl.Renderbuffer
 
@@ -38,12 +47,15 @@ def check_size(size: Size) -> Size:
 
 
 def make(size: Size, format: str, data: bytes | None = None) -> moderngl.Texture:
-    """A nearest-filtered, edge-clamped texture. Raises `GpuMemoryError` where the driver has no room."""
+    """A nearest-filtered, edge-clamped texture. Raises `GpuMemoryError` where the driver has no room.
+
+    `extra` of the texture is its border: the value that samplers read beyond the edge, or None for the nearest texel.
+    """
     if format not in FORMATS:
         raise ParameterError(f"texture format '{format}' is unknown{suggestion(format, FORMATS)}")
     components, dtype = FORMATS[format]
     gl = context.get()
-    needed = math.prod(size) * components * _BYTES[dtype]
+    needed = math.prod(size) * components * np.dtype(_DTYPES[dtype][0]).itemsize
     gl.clear_errors() if hasattr(gl, "clear_errors") else gl.error
     try:
         texture = gl.texture(size, components, data, dtype=dtype)
@@ -82,10 +94,12 @@ class Pool:
         self._free: dict[tuple[Size, str], list[moderngl.Texture]] = defaultdict(list)
         self._framebuffers: dict[tuple[int, ...], moderngl.Framebuffer] = {}
 
-    def take(self, size: Size, format: str) -> moderngl.Texture:
-        """A texture of unspecified content."""
+    def take(self, size: Size, format: str, border: float | None = None) -> moderngl.Texture:
+        """A texture of unspecified content; beyond its edge, samplers read `border`, or the nearest texel for None."""
         free = self._free[size, format]
-        return free.pop() if free else make(size, format)
+        texture = free.pop() if free else make(size, format)
+        texture.extra = border
+        return texture
 
     def give_back(self, lent: list[tuple[Size, str, moderngl.Texture]]) -> None:
         """Textures that are no longer held; touches no GL, so that any thread's garbage collector may call it."""
@@ -108,9 +122,9 @@ class Pool:
 
 
 def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:
-    """(H, W) or (H, W, channels), top row first; float32, or uint8 for byte formats."""
+    """(H, W) or (H, W, channels), top row first; float32, or uint8 and uint32 for bytes and whole numbers."""
     context.get()  # refuses the wrong thread
-    dtype = {"f1": np.uint8, "f2": np.float16, "f4": np.float32}[texture.dtype]
+    dtype, returned = _DTYPES[texture.dtype]
     what = f"reading back a {texture.width}x{texture.height} texture"
     try:
         # our own memory: moderngl's `read` does not survive if there is none
@@ -119,6 +133,6 @@ def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:
         refuse_exhaustion(what)
         pixels = pixels[::-1, :, : channels or texture.components]
         pixels = pixels[..., 0] if pixels.shape[2] == 1 else pixels
-        return np.ascontiguousarray(pixels, np.uint8 if dtype == np.uint8 else np.float32)
+        return np.ascontiguousarray(pixels, returned)
     except MemoryError as error:
         raise GpuMemoryError(f"no memory for {what}: {error}") from error

@@ -32,14 +32,35 @@ def cosine_hemisphere(count: int, seed: int, falloff: float = 0.0) -> np.ndarray
     elevation = (index + (0.5 if seed == 0 else shift[0])) / count
     azimuth = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
     offset = (radical_inverse(index, 3) + shift[2]) % 1
-    # the inverse of smoothstep: t² (3 - 2t) = y at t = 1/2 - sin(asin(1 - 2y) / 3)
-    faded = 0.5 - np.sin(np.arcsin(1 - 2 * ((radical_inverse(index, 5) + shift[3]) % 1)) / 3)
-    reach = 1 - falloff + falloff * faded
+    reach = _reach((radical_inverse(index, 5) + shift[3]) % 1, falloff)
     r = np.sqrt(elevation)
     direction = np.stack([r * np.cos(azimuth), r * np.sin(azimuth), np.sqrt(1 - elevation)], axis=1)
     kernel = np.concatenate([direction * reach[:, None], offset[:, None]], axis=1).astype(np.float32)
     kernel.flags.writeable = False
     return kernel
+
+
+@lru_cache(maxsize=64)
+def ways(sets: int, seed: int, falloff: float = 0.0) -> np.ndarray:
+    """One way in a given direction for each of `sets` interleaved sets of samples: (sets, 2) float32.
+
+    Its reach, in radii, as `cosine_hemisphere` draws them, and the offset of its first point, in [0, 1) steps; both are
+    stratified over the sets.
+    """
+    index = np.arange(sets)
+    shift = np.random.default_rng(seed).random(2)
+    offset = (index + (0.5 if seed == 0 else shift[0])) / sets
+    reach = _reach((radical_inverse(index, 2) + shift[1]) % 1, falloff)
+    result = np.stack([reach, offset], axis=1).astype(np.float32)
+    result.flags.writeable = False
+    return result
+
+
+def _reach(uniform: np.ndarray, falloff: float) -> np.ndarray:
+    """Distances, in radii, from numbers in [0, 1): an occluder at d is within one with probability `influence(d²)`."""
+    # the inverse of smoothstep: t² (3 - 2t) = y at t = 1/2 - sin(asin(1 - 2y) / 3)
+    faded = 0.5 - np.sin(np.arcsin(1 - 2 * uniform) / 3)
+    return 1 - falloff + falloff * faded
 
 
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:

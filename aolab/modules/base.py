@@ -1,15 +1,20 @@
 """What a module is: parameters, what it gives, and its passes. No GL in here."""
 
-from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self, TypeVar
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeVar
 
-from pydantic import Field
+from pydantic import ConfigDict, Field, WrapValidator, model_serializer
 
 from ..errors import ParameterError, suggestion
-from ..gl.source import Constant
 from ..scene.scene import Scene
-from .parameters import AUTO, Parameters, parameter
-from .passes import AMBIENT, DIRECT, Estimate, Pass, reflect
+from .buffers import Buffer
+from .estimate import Estimate
+from .filters import FILTERS, Filter
+from .names import check_outputs, check_parameters
+from .occluders import OCCLUDERS, OccluderKind
+from .parameters import AUTO, Choice, Parameters, is_word, label, parameter, unknown
+from .passes import AMBIENT, DIRECT, Pass, reflect
 from .readable import Readable
 
 if TYPE_CHECKING:
@@ -86,16 +91,36 @@ def auto_radius(scene: Scene) -> float:
 
 SCALES = (0.125, 1.0)
 
+if TYPE_CHECKING:
+    OccludersByName = str | OccluderKind
+    FilterByName = str | Filter
+else:
+
+    def _by_name(table: Mapping[str, type[Choice]], base: type[Choice]) -> Any:
+        """A name of the table, or a choice of one's own; the JSON schema lists the names."""
+        own = WrapValidator(lambda value, named: value if isinstance(value, base) else named(value))
+        return Annotated[Literal[tuple(table)], own]
+
+    OccludersByName = _by_name(OCCLUDERS, OccluderKind)
+    FilterByName = _by_name(FILTERS, Filter)
+
 
 class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
     format), `derived` (name: function of the frame and of "" or "_raw", for what is read off its outputs). `lit` says
-    that the estimate itself reads the environment, so that new light asks for a new estimate.
+    that the estimate itself reads the environment, so that new light asks for a new estimate. `buffers` describes
+    outputs and derived buffers that the table of buffers lacks.
     A module gives `visibility`, and may give `irradiance`, the environment's with occlusion: the lighting reflects it
     in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    Raises `ParameterError`, when the class is made, for a parameter or an output whose name belongs to the pipeline.
+
+    The parameters of the chosen occluder kind and filter stand beside the module's own: `SSAO(occluders="layers",
+    layers=3).layers` is 3.
     """
+
+    model_config = ConfigDict(extra="allow")  # the parameters of choices; `prepared` refuses others
 
     name: ClassVar[str] = ""
     title: ClassVar[str] = ""
@@ -103,16 +128,14 @@ class Module(Parameters):
     shader: ClassVar[str] = ""
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
     derived: ClassVar[Mapping[str, "Callable[[Readable, str], np.ndarray]"]] = {}
+    buffers: ClassVar[Sequence[Buffer]] = ()
     lit: ClassVar[bool] = False
+    choices: ClassVar[Mapping[str, Mapping[str, type[Choice]]]] = {"occluders": OCCLUDERS, "filter": FILTERS}
 
-    occluders: Literal["depth", "layers", "views"] = parameter(
+    occluders: OccludersByName = parameter(
         "depth", "What is tested for blocking: the camera's depth, `layers` of it, peeled, or further `views`."
     )
-    layers: int = parameter(4, "Depth layers, where those are the occluders: two make a solid.", ge=2, le=4)
-    views: int = parameter(4, "Cameras beside the camera, where those are the occluders.", ge=1, le=4)
-    view_scale: float = parameter(0.5, "Resolution of the further views, as a share of the image's.", ge=0.125, le=1)
-    view_layers: int = parameter(1, "Peeled layers of each further view.", ge=1, le=4)
-    filter: Literal["none", "box4", "bilateral"] = parameter(
+    filter: FilterByName = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
     )
     scale: float = parameter(
@@ -122,9 +145,90 @@ class Module(Parameters):
         le=SCALES[1],
     )
 
-    def constants(self) -> dict[str, Constant]:
-        """Parameters that a shader may take as compile-time values."""
-        return {key: value for key, value in self.model_dump().items() if isinstance(value, (bool, int, float))}
+    @classmethod
+    def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
+        super().__pydantic_init_subclass__(**kwargs)
+        own = [name for name in cls.model_fields if name not in Module.model_fields]
+        check_parameters(
+            label(cls),
+            [name for name in own if not is_word(cls, name)],
+            [name for name in own if hasattr(Module, name)],
+        )
+        check_outputs(label(cls), cls.outputs)
+
+    @classmethod
+    def stated(cls) -> dict[str, type[Parameters]]:
+        of_choices = {
+            name: choice for table in cls.choices.values() for choice in table.values() for name in choice.model_fields
+        }
+        return super().stated() | of_choices
+
+    @classmethod
+    def prepared(cls, values: dict[str, Any]) -> dict[str, Any]:
+        """The values with all parameters of the chosen kinds. Raises `ParameterError` for one of another choice."""
+        own = {name: value for name, value in values.items() if name in cls.model_fields}
+        others = {name: value for name, value in values.items() if name not in own}
+        for axis, table in cls.choices.items():
+            chosen = own.get(axis, cls.model_fields[axis].default)
+            if isinstance(chosen, str) and chosen in table:
+                chosen = table[chosen]()
+            if isinstance(chosen, Choice):
+                chosen = chosen.replace(**{name: others.pop(name) for name in [*others] if name in chosen.stated()})
+                builtin = type(chosen) is table.get(chosen.name)
+                own |= {axis: chosen.name, **chosen.model_dump()} if builtin else {axis: chosen}
+        for name, value in others.items():
+            if name not in cls.stated():
+                raise ParameterError(unknown(cls, name))
+            choice = cls.stated()[name]
+            assert issubclass(choice, Choice)
+            now = own.get(choice.axis, cls.model_fields[choice.axis].default)
+            raise ParameterError(
+                f"{label(cls)}: {name} = {value!r} is a parameter of {choice.label()}; here {choice.axis} is "
+                f"'{now if isinstance(now, str) else now.name}'"
+            )
+        return own
+
+    @model_serializer
+    def _flat(self) -> dict[str, Any]:
+        """All values by name, plain, those of the chosen kinds among them."""
+        values: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
+        for axis in self.choices:
+            chosen = self.chosen(axis)
+            values |= {axis: chosen.name, **chosen.model_dump()}
+        return values
+
+    @classmethod
+    def model_json_schema(cls, *args: Any, **kwargs: Any) -> dict[str, Any]:
+        """The JSON schema of the values. A parameter of a choice has the choice as `with`: {"occluders": "layers"}."""
+        schema = super().model_json_schema(*args, **kwargs)
+        schema["additionalProperties"] = False
+        for name, choice in cls.stated().items():
+            if issubclass(choice, Choice):
+                about = choice.model_json_schema()["properties"][name]
+                schema["properties"][name] = {**about, "with": {choice.axis: choice.name}}
+        return schema
+
+    def chosen(self, axis: str) -> Choice:
+        """The occluder kind (`occluders`) or the filter (`filter`), with its parameters."""
+        value = getattr(self, axis)
+        if isinstance(value, Choice):
+            return value
+        choice = self.choices[axis][value]
+        return choice(**{name: (self.model_extra or {})[name] for name in choice.model_fields})
+
+    def replace(self, **changes: object) -> Self:
+        """The same with some values changed, validated again. Another choice starts with its own defaults."""
+        kept = {name: getattr(self, name) for name in type(self).model_fields}
+        for axis in self.choices:
+            if changes.get(axis, kept[axis]) == kept[axis] and isinstance(kept[axis], str):
+                kept |= self.chosen(axis).model_dump()
+        return type(self)(**{**kept, **changes})
+
+    @property
+    def occlusion_radius(self) -> float | None:
+        """The radius of occlusion in scene units, of a resolved module; None where the method has none."""
+        radius = getattr(self, "radius", None)
+        return radius if isinstance(radius, (int, float)) else None
 
     def passes(self) -> list[Pass]:
         """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
@@ -134,13 +238,25 @@ class Module(Parameters):
         """What is computed from the surfaces, before any lighting."""
         return Estimate(self.passes(), self.outputs)
 
-    def lighting(self) -> list[Pass]:
-        """What lights the surfaces once the estimate is known: passes that give `direct` and `ambient` radiance."""
-        return [DIRECT, reflect("irradiance", "ambient") if "irradiance" in self.outputs else AMBIENT]
+    def lighting(self) -> Sequence[Pass | Estimate]:
+        """What lights the surfaces once the estimate is known: steps that give `direct` and `ambient` radiance.
+
+        Each step may read the outputs of those before it. A step that takes samples is an `Estimate`.
+        """
+        if "irradiance" in self.outputs:
+            return [DIRECT, reflect("irradiance", "ambient")]
+        return [DIRECT, replace(AMBIENT, constants={"occluded": "visibility" in self.outputs})]
 
     def bounce(self) -> Estimate | None:
         """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance; or nothing."""
         return None
+
+    def all_passes(self) -> list[Pass]:
+        """Every pass of the estimate, the lighting and the bounce."""
+        found: list[Pass] = []
+        for step in [self.estimate(), *self.lighting(), *filter(None, [self.bounce()])]:
+            found += [*step.once, *step.passes] if isinstance(step, Estimate) else [step]
+        return found
 
     def sends(self) -> bool:
         """Whether what blocks is asked for its light or albedo; then hidden surfaces are drawn with theirs."""

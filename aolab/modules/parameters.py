@@ -1,10 +1,11 @@
 """Parameters, stated once: validation, command line, uniforms, sliders and docs derive from the statement."""
 
-from typing import TYPE_CHECKING, Any, Literal, Self, get_args, get_origin
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ..errors import ParameterError, suggestion
+from ..gl.source import Constant
 
 AUTO = "auto"
 
@@ -30,19 +31,51 @@ class Parameters(BaseModel):
     if not TYPE_CHECKING:  # type checkers see the fields as arguments
 
         def __init__(self, **values: object) -> None:
+            values = self.prepared(values)
             try:
                 super().__init__(**values)
             except ValidationError as error:
                 raise ParameterError(_explain(type(self), error, values)) from None
 
+    @classmethod
+    def prepared(cls, values: dict[str, Any]) -> dict[str, Any]:
+        """The values as they are validated; a subclass may complete them."""
+        return values
+
+    @classmethod
+    def label(cls) -> str:
+        """The name that users know the class by."""
+        return str(getattr(cls, "name", "") or cls.__name__)
+
+    @classmethod
+    def stated(cls) -> dict[str, "type[Parameters]"]:
+        """{parameter: the class that states it}, in the order of their statements."""
+        return dict.fromkeys(cls.model_fields, cls)
+
+    def numbers(self) -> dict[str, Constant]:
+        """The values that a shader may take, as uniforms or as constants: words never reach a shader."""
+        own = {name: getattr(self, name) for name in type(self).model_fields}
+        return {name: value for name, value in own.items() if isinstance(value, (bool, int, float))}
+
     def replace(self, **changes: object) -> Self:
         """The same with some values changed, validated again."""
-        return type(self)(**{**self.model_dump(), **changes})
+        return type(self)(**{**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
+
+
+class Choice(Parameters):
+    """One alternative on an `axis` on which modules choose by name ("occluders", "filter"), with its parameters."""
+
+    axis: ClassVar[str] = ""
+    name: ClassVar[str] = ""
+
+    @classmethod
+    def label(cls) -> str:
+        return f"{cls.axis}='{cls.name}'"
 
 
 def label(parameters: type[Parameters]) -> str:
     """The name that users know the class by."""
-    return str(getattr(parameters, "name", "") or parameters.__name__)
+    return parameters.label()
 
 
 def _explain(parameters: type[Parameters], error: ValidationError, values: dict[str, object]) -> str:
@@ -50,8 +83,7 @@ def _explain(parameters: type[Parameters], error: ValidationError, values: dict[
     for item in error.errors():
         name = str(item["loc"][0]) if item["loc"] else ""
         if item["type"] == "extra_forbidden":
-            known = parameters.model_fields
-            messages[name] = f"{label(parameters)} has no parameter '{name}'{suggestion(name, known)}"
+            messages[name] = unknown(parameters, name)
         elif name:
             described = describe(parameters, name)
             messages[name] = (
@@ -64,8 +96,21 @@ def _explain(parameters: type[Parameters], error: ValidationError, values: dict[
     return "; ".join(messages.values())
 
 
+def is_word(parameters: type[Parameters], name: str) -> bool:
+    """Whether all values of a parameter are words; words never reach a shader."""
+    annotation = parameters.model_fields[name].annotation
+    return get_origin(annotation) is Literal and all(isinstance(value, str) for value in get_args(annotation))
+
+
+def unknown(parameters: type[Parameters], name: str) -> str:
+    """The error message for a name that is no parameter."""
+    return f"{label(parameters)} has no parameter '{name}'{suggestion(name, parameters.stated())}"
+
+
 def describe(parameters: type[Parameters], name: str) -> dict[str, str]:
-    """One parameter as text: name, type, default, range, unit, description."""
+    """One parameter as text: name, type, default, range, unit, description; `with`, the choice that it belongs to."""
+    if name not in parameters.model_fields:
+        parameters = parameters.stated()[name]
     schema = parameters.model_json_schema()
     properties = schema["properties"][name]
     branches = [properties, *properties.get("anyOf", [])]
@@ -79,6 +124,7 @@ def describe(parameters: type[Parameters], name: str) -> dict[str, str]:
         "range": ", ".join(f"{_BOUNDS[key]} {bounds[key]:g}" for key in _BOUNDS if key in bounds),
         "unit": properties.get("unit", ""),
         "description": properties.get("description", ""),
+        "with": label(parameters) if issubclass(parameters, Choice) else "",
     }
 
 

@@ -1,26 +1,23 @@
-"""What a pass is: one shader over the whole screen, and the textures it fills."""
+"""What a pass is: one shader, over the whole screen or over the scene's triangles, and the textures it fills."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 from ..gl.source import Constant
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """Passes that come to noisy buffers, `outputs` (name: format), which are then filtered and brought to full size."""
-
-    passes: Sequence["Pass"]
-    outputs: Mapping[str, str]
+from ..scene.scene import Scene
+from ..scene.view import View, Viewpoint
 
 
 @dataclass(frozen=True)
 class Pass:
     """`shader` (a file under glsl/, or GLSL text) reads textures by the names of its samplers and fills `outputs`.
 
-    `name` is what timings call it; `outputs` maps each `out` variable's buffer to its format, in order of location;
-    `constants` are compile-time values beyond the module's own parameters; `reads` (sampler: buffer) is for samplers
-    that go by another name than the buffer that they read.
+    `name` is the pass's name in timings. `outputs` maps each buffer to its format; the shader's `out` variable of the
+    same name fills it, whatever their order. `writes` (`out` variable: buffer) and `reads` (sampler: buffer) are for
+    variables whose name differs from the buffer's. `constants` are compile-time values beyond the module's parameters.
+    `outside` (buffer: value) is the value that samplers read beyond the edge of an output; without it, they read the
+    nearest texel.
     """
 
     name: str
@@ -28,13 +25,46 @@ class Pass:
     outputs: Mapping[str, str]
     constants: Mapping[str, Constant] = field(default_factory=dict)
     reads: Mapping[str, str] = field(default_factory=dict)
+    writes: Mapping[str, str] = field(default_factory=dict)
+    outside: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def outs(self) -> dict[str, str]:
+        """{buffer: `out` variable} of the outputs."""
+        variables = {buffer: variable for variable, buffer in self.writes.items()}
+        return {buffer: variables.get(buffer, buffer) for buffer in self.outputs}
+
+
+@dataclass(frozen=True, kw_only=True)
+class GeometryPass(Pass):
+    """A pass that draws the scene's triangles: `vertex` is its vertex shader, `shader` its fragment shader.
+
+    `seen_from` returns the viewpoint from the scene and the camera's view; None is the camera's view. The outputs have
+    the viewpoint's size. `clear` (buffer: value) fills outputs before drawing; without it, they start as 0. `combine`
+    decides between a fragment and its pixel: `nearest` tests the depth, `or` sets bits of unsigned integers.
+    Vertex shaders may read `local_position`, `local_normal`, `texture_uv`, `vertex_color` and `world_from_local`;
+    fragment shaders may sample `base_texture`, and read `base_color` and `alpha_cutoff`, of each mesh.
+    """
+
+    vertex: str = "pipeline/gbuffer.vert"
+    seen_from: Callable[[Scene, View], Viewpoint] | None = None
+    clear: Mapping[str, float] = field(default_factory=dict)
+    combine: Literal["nearest", "or"] = "nearest"
 
 
 # Lighting, as every method has it unless it says otherwise: lights through shadow maps, the environment by its SH
-DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"})
+DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"}, {"shared_light": False})
+# the same, times the buffer `light_share`, the share of the lights' irradiance that arrives
+SHARED_DIRECT = replace(DIRECT, constants={"shared_light": True})
 AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
 
 
 def reflect(irradiance: str, radiance: str) -> Pass:
     """The pass that reflects the buffer `irradiance` diffusely, as `radiance`."""
-    return Pass(radiance, "pipeline/reflect.frag", {radiance: "RGBA16F"}, reads={"source": irradiance})
+    return Pass(
+        radiance,
+        "pipeline/reflect.frag",
+        {radiance: "RGBA16F"},
+        reads={"source": irradiance},
+        writes={"reflected": radiance},
+    )

@@ -1,14 +1,16 @@
 """Screen-space directional occlusion: light from the open directions, and one bounce from the blocked ones."""
 
+from collections.abc import Sequence
 from math import pi
 from typing import ClassVar, Literal
 
+from ..maths.sampling import ways
 from ..scene.prefiltered import Blurred
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
 from .marched import Marched
 from .parameters import parameter
-from .passes import Pass
+from .passes import SHARED_DIRECT, Pass
 
 
 class SSDO(Marched):
@@ -39,6 +41,17 @@ class SSDO(Marched):
 
     def tables(self) -> dict[str, Blurred]:
         return {"prefiltered_environment": Blurred(self.environment_lod * 2 * pi / self.directions)}  # Δω = 2π / N
+
+    def samples(self, seed: int) -> dict[str, bytes]:
+        of_lights = {"light_samples": ways(16, seed, self.falloff).tobytes()} if self.light_steps else {}
+        return super().samples(seed) | of_lights
+
+    def lighting(self) -> Sequence[Pass | Estimate]:
+        direct, ambient = super().lighting()
+        if not self.light_steps:
+            return [direct, ambient]
+        share = {"light_share": "RGBA16F"}
+        return [Estimate([Pass("ssdo lights", "ssdo.lights.frag", share)], share), SHARED_DIRECT, ambient]
 
     def bounce(self) -> Estimate | None:
         if not self.bounces:

@@ -1,69 +1,82 @@
-"""Runs a module's passes: at its scale, over its sample sets, filtered, and brought to full size."""
+"""Runs an estimate: at its scale, over its sample sets, filtered, and brought to full size."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
 
-from ..modules import Module
-from ..modules.passes import Estimate
+from ..errors import ParameterError
+from ..gl.bindings import Bindings
+from ..modules.estimate import Estimate
+from ..modules.passes import GeometryPass, Pass
 from ..scene.view import View
 from . import filters
-from .occluders import Occluders
-from .pass_runner import Buffers, Painter
+from .pass_runner import Buffers
+from .state import FrameContext, SurfaceState
 
 
-@dataclass(frozen=True)
-class Run:
-    """What all estimates of one frame share.
+def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()) -> Buffers:
+    """The outputs of `what`, averaged, filtered, at full size; `NAME_raw` is each one before the filter.
 
-    `inputs` are textures beside the surfaces; `seeds` are averaged over; `small` is the G-buffer at the module's scale.
+    The passes may read the surfaces, the occluders, the module's numbers and samples, and all that is `given`.
     """
-
-    painter: Painter
-    module: Module
-    occluders: Occluders
-    inputs: Buffers
-    view: View
-    seeds: range
-    small: Buffers
-
-
-def estimate(run: Run, what: Estimate, large: Buffers) -> Buffers:
-    """The outputs of `what`, averaged, filtered, at full size; `NAME_raw` is each one before the filter."""
-    painter, module = run.painter, run.module
-    small, small_view = large, run.view
-    if module.scale < 1:
-        small_view = run.view.scaled(module.scale)
-        small = {**large, **run.small}
-    if len(run.seeds) == 1:
+    frame, runner = state.frame, state.frame.runner
+    given = list(given)
+    if what.once:
+        known = [Bindings("the surfaces", state.large), frame.parameters, *given]
+        given.append(Bindings("the passes before the samples", steps(frame, what.once, known)))
+    if len(frame.seeds) == 1:
         formats = dict(what.outputs)
-        raw = _passes(run, what, small, small_view, run.seeds[0])
+        raw = _passes(state, what, given, frame.seeds[0])
     else:
         formats = {name: filters.single_precision(format) for name, format in what.outputs.items()}
-        raw = _accumulated(run, what, formats, small, small_view)
-    result = filters.apply(painter, module.filter, raw, formats, small, small_view)
-    if module.scale < 1:
-        result = filters.upsample(painter, result, formats, small, small_view, large, run.view)
+        raw = _accumulated(state, what, given, formats)
+    small, large = (state.small, state.small_view), (state.large, frame.view)
+    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large)
     return {**{f"{name}_raw": texture for name, texture in raw.items()}, **result}
 
 
-def _accumulated(run: Run, what: Estimate, formats: Mapping[str, str], surfaces: Buffers, view: View) -> Buffers:
-    means = {name: run.painter.take(view.size, format) for name, format in formats.items()}
+def steps(frame: FrameContext, passes: Iterable[Pass], given: Sequence[Bindings], view: View | None = None) -> Buffers:
+    """The outputs of passes that run once each, in order: a pass may read those before it.
+
+    Full-screen passes have the size of `view`, by default the frame's.
+    """
+    view, made, fillers = view or frame.view, {}, {}
+    seen = Bindings("the view", uniforms=view.uniforms)
+    for step in passes:
+        for name in step.outputs:
+            if name in fillers:
+                raise ParameterError(
+                    f"passes '{fillers[name]}' and '{step.name}' both fill '{name}'; rename one of them"
+                )
+            fillers[name] = step.name
+        before = [*given, Bindings("the passes before", made)]
+        if isinstance(step, GeometryPass):
+            made = made | frame.rasterizer.draw(step, view, before)
+        else:
+            made = made | frame.runner.run(step, [seen, *before], view.size)
+    return made
+
+
+def _accumulated(state: SurfaceState, what: Estimate, given: Sequence[Bindings], formats: Mapping[str, str]) -> Buffers:
+    runner, seeds = state.frame.runner, state.frame.seeds
+    means = {name: runner.take(state.small_view.size, format) for name, format in formats.items()}
     for mean in means.values():  # one by one: together they may be more than a framebuffer takes
-        run.painter.pool.framebuffer([mean]).clear()
-    for seed in run.seeds:
-        one = _passes(run, what, surfaces, view, seed)
-        filters.accumulate(run.painter, one, means, len(run.seeds), view)
-        run.painter.give_back(one)
+        runner.pool.framebuffer([mean]).clear()
+    for seed in seeds:
+        one = _passes(state, what, given, seed)
+        filters.accumulate(runner, one, means, formats, len(seeds))
+        runner.give_back(one)
     return means
 
 
-def _passes(run: Run, what: Estimate, surfaces: Buffers, view: View, seed: int) -> Buffers:
-    module = run.module
-    constants = module.constants()
-    uniforms = {**view.uniforms, **module.model_dump(), **run.occluders.uniforms, **module.samples(seed)}
-    inputs = {**surfaces, **run.occluders.inputs, **run.inputs}
-    aliases = {"occluders.glsl": f"occluders/{run.occluders.kind}.glsl"}
-    made: Buffers = {}
-    for step in what.passes:
-        made |= run.painter.run(step, {**inputs, **made}, uniforms, view.size, constants, aliases)
-    return {name: made[name] for name in what.outputs}
+def _passes(state: SurfaceState, what: Estimate, given: Sequence[Bindings], seed: int) -> Buffers:
+    frame = state.frame
+    known = [
+        Bindings("the surfaces", state.small),
+        state.occluders.bindings,
+        frame.parameters,
+        frame.samples(seed),
+        *given,
+    ]
+    made = steps(frame, what.passes, known, state.small_view)
+    outputs = {name: made.pop(name) for name in what.outputs}
+    frame.runner.give_back(made)
+    return outputs

@@ -1,4 +1,4 @@
-"""What happens to an estimate before it lights anything: accumulation, noise removal, upsampling.
+"""Runs what happens to an estimate before it lights anything: accumulation, noise removal, upsampling.
 
 A pass treats up to four buffers alike, and asks the geometry once for all of them (glsl/lib/sources.glsl).
 """
@@ -8,82 +8,106 @@ from collections.abc import Iterator, Mapping
 import moderngl
 
 from ..gl import context
+from ..gl.bindings import Bindings
 from ..gl.texture import FORMATS
-from ..modules.passes import Pass
+from ..modules.filters import Filter
+from ..modules.filters.base import MOST_SOURCES, over_sources
 from ..scene.view import View, ray_scale_offset
-from .pass_runner import Buffers, Painter
+from .pass_runner import Buffers, PassRunner
 
-GROUP = 4  # textures a pass: with those of the geometry, well below the 16 that OpenGL 3.3 lets a shader read
+Formats = Mapping[str, str]
 
 
 def apply(
-    painter: Painter, filter: str, estimate: Buffers, formats: Mapping[str, str], surfaces: Buffers, view: View
-) -> Buffers:
-    """Each buffer of the estimate through the separable filter `filter` (none, box4, bilateral), rows then columns."""
-    if filter == "none":
-        return estimate
-    shader, result = f"pipeline/{filter}.frag", {}
-    for names, inputs in _groups(estimate):
-        outputs = {name: formats[name] for name in names}
-        rows, columns = (
-            Pass(_title("filter", names), shader, outputs, {"sources": len(names), "vertical": vertical})
-            for vertical in (False, True)
-        )
-        between = painter.run(rows, surfaces | inputs, view.uniforms, view.size)
-        result |= painter.run(columns, surfaces | _sources(between), view.uniforms, view.size)
-        painter.give_back(between)
-    return result
-
-
-def upsample(
-    painter: Painter,
+    runner: PassRunner,
+    filter: Filter,
     estimate: Buffers,
-    formats: Mapping[str, str],
-    small: Buffers,
-    small_view: View,
-    large: Buffers,
-    view: View,
+    formats: Formats,
+    small: tuple[Buffers, View],
+    large: tuple[Buffers, View],
 ) -> Buffers:
-    """Each buffer of the estimate at the size of `view`, by joint bilateral upsampling."""
-    uniforms = {**view.uniforms, "small_ray_from_pixel": ray_scale_offset(small_view.camera, small_view.size)}
-    surfaces = {**large, "smallViewZ": small["viewZ"], "smallNormal": small["viewNormal"]}
-    result = {}
-    for names, inputs in _groups(estimate):
-        outputs = {name: formats[name] for name in names}
-        step = Pass(_title("upsample", names), "pipeline/upsample.frag", outputs, {"sources": len(names)})
-        result |= painter.run(step, surfaces | inputs, uniforms, view.size)
+    """Each buffer of the estimate, filtered and at full size; `small` and `large` are surfaces with their view."""
+    result: Buffers = {}
+    upsampled = small[1].size != large[1].size
+    for names in _groups(estimate):
+        some, textures = {name: formats[name] for name in names}, {name: estimate[name] for name in names}
+        if filter.at_full_size:
+            if upsampled:
+                textures = _upsample(runner, filter, textures, some, small, large)
+            result |= _passes(runner, filter, textures, some, large)
+        else:
+            textures = _passes(runner, filter, textures, some, small)
+            result |= _upsample(runner, filter, textures, some, small, large) if upsampled else textures
     return result
 
 
-def accumulate(painter: Painter, estimate: Buffers, means: Buffers, frames: int, view: View) -> None:
-    """Add one of `frames` estimates, at its share, to the running means (single precision)."""
+def _passes(
+    runner: PassRunner, filter: Filter, textures: Buffers, formats: Formats, surfaces: tuple[Buffers, View]
+) -> Buffers:
+    """The filter's passes, each over the result of the one before it."""
+    given = textures
+    for step in filter.passes(formats):
+        made = runner.run(step, [*_common(filter, *surfaces), _sources(textures)], surfaces[1].size)
+        if textures is not given:
+            runner.give_back(textures)
+        textures = made
+    return textures
+
+
+def _upsample(
+    runner: PassRunner,
+    filter: Filter,
+    textures: Buffers,
+    formats: Formats,
+    small: tuple[Buffers, View],
+    large: tuple[Buffers, View],
+) -> Buffers:
+    """The buffers at the size of `large`."""
+    surfaces, view = small
+    there = Bindings(
+        "the small view",
+        {"smallViewZ": surfaces["viewZ"], "smallNormal": surfaces["viewNormal"]},
+        {"small_ray_from_pixel": ray_scale_offset(view.camera, view.size)},
+    )
+    step = over_sources("upsample", filter.upsampling, formats)
+    return runner.run(step, [*_common(filter, *large), there, _sources(textures)], large[1].size)
+
+
+def _common(filter: Filter, surfaces: Buffers, view: View) -> list[Bindings]:
+    numbers = filter.numbers()
+    return [
+        Bindings("the surfaces", surfaces),
+        Bindings("the view", uniforms=view.uniforms),
+        Bindings(filter.label(), uniforms=numbers, constants=numbers),
+    ]
+
+
+def accumulate(runner: PassRunner, estimate: Buffers, means: Buffers, formats: Formats, frames: int) -> None:
+    """Add one of `frames` estimates, at its share, to the running means (`formats`, single precision)."""
     gl = context.get()
     gl.enable_only(moderngl.BLEND)
     gl.blend_func = moderngl.ONE, moderngl.ONE
-    for names, inputs in _groups(estimate):
-        step = Pass("accumulate", "pipeline/share.frag", {}, {"sources": len(names)})
+    share = Bindings("the mean", uniforms={"share": 1.0 / frames})
+    for names in _groups(estimate):
+        step = over_sources("accumulate", "pipeline/share.frag", {name: formats[name] for name in names})
         targets = {name: means[name] for name in names}
-        painter.run(step, inputs, {"share": 1.0 / frames}, view.size, targets=targets)
+        sources = _sources({name: estimate[name] for name in names})
+        runner.run(step, [share, sources], means[names[0]].size, targets=targets)
     gl.enable_only(moderngl.NOTHING)
 
 
 def single_precision(format: str) -> str:
     """The float32 format with the same channels, for sums over many frames."""
-    return {1: "R32F", 2: "RGBA32F", 4: "RGBA32F"}[FORMATS[format][0]]
+    return {1: "R32F", 2: "RG32F", 4: "RGBA32F"}[FORMATS[format][0]]
 
 
-def _groups(estimate: Buffers) -> Iterator[tuple[list[str], Buffers]]:
-    """Names, and the same textures under the names that the shaders read them by."""
+def _groups(estimate: Buffers) -> Iterator[list[str]]:
+    """The names, as many at a time as one pass treats."""
     names = list(estimate)
-    for start in range(0, len(names), GROUP):
-        group = names[start : start + GROUP]
-        yield group, _sources({name: estimate[name] for name in group})
+    for start in range(0, len(names), MOST_SOURCES):
+        yield names[start : start + MOST_SOURCES]
 
 
-def _sources(textures: Buffers) -> Buffers:
-    return {f"source{number}": texture for number, texture in enumerate(textures.values())}
-
-
-def _title(what: str, names: list[str]) -> str:
-    """As timings call it: 'filter visibility', 'filter occlusion0 to occlusion3'."""
-    return f"{what} {names[0]}" + (f" to {names[-1]}" if len(names) > 1 else "")
+def _sources(textures: Buffers) -> Bindings:
+    """The textures under the names that filters read them by."""
+    return Bindings("the sources", {f"source{number}": texture for number, texture in enumerate(textures.values())})

@@ -4,15 +4,18 @@ import operator
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from time import perf_counter
 from typing import Any
 
 from ..errors import Notice, ParameterError
 from ..gl import context
+from ..gl.bindings import Bindings
 from ..gl.program import Programs
 from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
 from ..modules import MODULES, Module, find
+from ..modules.occluders import OccluderKind
+from ..modules.occluders.base import Occluders
 from ..scene.camera import Camera
 from ..scene.environment import Environment
 from ..scene.lights import Light
@@ -20,24 +23,17 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from ..version import __version__
 from . import lighting, surfaces
-from .estimate import Run, estimate
+from .environments import EnvironmentMaps
+from .estimate import estimate
 from .frame import Frame, lend
 from .geometry import Geometry
-from .lighting import Display, EnvironmentMaps, ToneMap
-from .occluders import KINDS, Stage
-from .pass_runner import Buffers, Painter
+from .lighting import Display, Lights, ToneMap
+from .pass_runner import Buffers, PassRunner
+from .rasterizer import DepthTargets, Rasterizer
 from .shadows import ShadowMaps, draw_shadows
+from .state import FrameContext, SurfaceState
 
 DEFAULT_SIZE = (1280, 720)
-
-
-@dataclass(eq=False)
-class Unlit:
-    """All of a frame that light has no part in, so that it can be lit again: `run` with its painter's work done, the
-    surfaces and, unless the module's is `lit`, the estimate."""  # fmt: skip
-
-    run: Run
-    buffers: Buffers
 
 
 class Lab:
@@ -52,8 +48,7 @@ class Lab:
         self.watch = watch
         context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
-        self._environments, self._depth = EnvironmentMaps(), surfaces.DepthTargets()
-        self._samplers = surfaces.border_samplers()
+        self._environments, self._depth = EnvironmentMaps(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
@@ -117,10 +112,9 @@ class Lab:
         look again. Raises `ParameterError` for a frame that no lab rendered, and what `render` raises.
         """
         start = perf_counter()
-        if not isinstance(frame, Frame) or not isinstance(frame.kept, Unlit):
+        if not isinstance(frame, Frame) or not isinstance(frame.kept, SurfaceState):
             what = f"this frame, of {frame.info.get('module')}," if isinstance(frame, Frame) else repr(frame)
             raise ParameterError(f"relight: {what} was not rendered by a lab; there is no estimate to light")
-        unlit = frame.kept
         changes: dict[str, Any] = {"environment": environment, "lights": lights}
         assert frame.scene is not None  # it was rendered
         scene = frame.scene.replace(**{name: value for name, value in changes.items() if value is not None})
@@ -129,7 +123,7 @@ class Lab:
             frame.info["tone_map"] if tone_map is None else tone_map,
         )
         self._begin()
-        lit = self._lit(Painter(self._programs, self._pool, self._samplers), unlit, scene, display)
+        lit = self._lit(frame.kept, self._rasterizer(scene), display)
         lit.notes = list(frame.notes)
         lit.frame_ms = (perf_counter() - start) * 1e3
         return lit
@@ -143,9 +137,12 @@ class Lab:
         module = module.resolved(scene)
         view = View(camera, size, scene.bounds)
         self._make_room({view.size, view.scaled(module.scale).size})
-        painter = Painter(self._programs, self._pool, self._samplers)
-        unlit = self._unlit(painter, scene, module, view, range(seed, seed + frames))
-        return self._lit(painter, unlit, scene, display)
+        frame = FrameContext(self._rasterizer(scene), module, view, range(seed, seed + frames))
+        return self._lit(self._state(frame), frame.rasterizer, display)
+
+    def _rasterizer(self, scene: Scene) -> Rasterizer:
+        """The means to draw one frame of the scene."""
+        return Rasterizer(PassRunner(self._programs, self._pool), self._geometry, self._depth, scene)
 
     def _begin(self) -> None:
         context.collect()
@@ -158,39 +155,40 @@ class Lab:
             self._pool.trim(sizes)
             self._sizes = sizes
 
-    def _unlit(self, painter: Painter, scene: Scene, module: Module, view: View, seeds: range) -> Unlit:
+    def _state(self, frame: FrameContext) -> SurfaceState:
         """The surfaces, and the module's estimate if no light takes part in it."""
-        with self._lending(painter):
-            buffers = surfaces.g_buffer(painter, self._geometry, self._depth, scene, view)
-            stage = Stage(painter, self._geometry, self._depth, scene, view)
-            occluders = KINDS[module.occluders](stage, module, buffers)
-            small = surfaces.shrink(painter, buffers, view, view.scaled(module.scale)) if module.scale < 1 else {}
-            run = Run(painter, module, occluders, {}, view, seeds, small)
+        module, view, runner = frame.module, frame.view, frame.runner
+        with self._lending(runner):
+            large = frame.rasterizer.surfaces([view])
+            small_view = view.scaled(module.scale) if module.scale < 1 else view
+            small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
+            state = SurfaceState(frame, large, small, small_view, occluders(frame, large), {})
             if not module.lit:
-                buffers |= estimate(run, module.estimate(), buffers)
+                state = replace(state, estimate=estimate(state, module.estimate()))
             refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")
-        lent, painter.lent = painter.lent, []
-        return lend(Unlit(run, buffers), self._pool, lent)
+        lent, runner.lent = runner.lent, []
+        return lend(state, self._pool, lent)
 
-    def _lit(self, painter: Painter, unlit: Unlit, scene: Scene, display: Display) -> Frame:
-        """A frame from what is known of the surfaces, under the light of `scene`."""
-        module, view, occluders = unlit.run.module, unlit.run.view, unlit.run.occluders
+    def _lit(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
+        """A frame from what is known of the surfaces, under the light of the rasterizer's scene."""
+        state = kept.under(rasterizer)
+        frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
+        module, view = frame.module, frame.view
         assert scene.environment is not None  # Scene fills it in
-        with self._lending(painter):
+        with self._lending(runner):
             tables = self._environments.tables(scene.environment, module.tables())
-            lit_by = lighting.Illumination(scene, self._shadow_maps(painter, scene), tables)
-            run = replace(unlit.run, painter=painter, inputs=tables)
-            buffers = dict(unlit.buffers)
+            lights = Lights(lighting.lamps(scene, self._shadow_maps(rasterizer)), scene.environment, tables)
             if module.lit:
-                buffers |= estimate(run, module.estimate(), buffers)
-            buffers |= lighting.light(painter, buffers, lit_by, view, module, occluders)
+                state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
+            lit = lighting.light(state, lights)
+            buffers = {**state.large, **state.estimate, **lit}
             if bounce := module.bounce():
-                sent = lighting.senders(painter, buffers, lit_by, view, occluders)
-                buffers["sender"] = sent["sender"]
-                run = replace(run, occluders=replace(occluders, inputs=occluders.inputs | sent))
-                buffers |= estimate(run, bounce, buffers)
-                buffers |= lighting.bounced(painter, buffers, view)
-            buffers |= lighting.compose(painter, buffers, self._environments.of(scene.environment), view, display)
+                sender, sending = lighting.senders(state, lit, lights)
+                known = [Bindings("the lighting", {**lit, **sender}), Bindings("the estimate", state.estimate)]
+                gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
+                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, gathered, view)}
+            sky = self._environments.of(scene.environment)
+            buffers |= lighting.compose(runner, buffers, sky, view, display)
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
         info = {
             "aolab": __version__,
@@ -200,30 +198,39 @@ class Lab:
             "parameters": module.model_dump(),
             "camera": asdict(view.camera),
             "size": list(view.size),
-            "seed": run.seeds.start,
-            "accumulate": len(run.seeds),
+            "seed": frame.seeds.start,
+            "accumulate": len(frame.seeds),
             **asdict(display),
             "triangles": scene.triangles,
         }
         derived = {f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")}
-        frame = Frame(buffers, painter.timer.result(), info, derived=derived, scene=scene, kept=unlit)
-        return lend(frame, self._pool, painter.lent)
+        result = Frame(buffers, runner.timer.result(), info, derived=derived, scene=scene, kept=kept)
+        return lend(result, self._pool, runner.lent)
 
     @contextmanager
-    def _lending(self, painter: Painter) -> Iterator[None]:
-        """If this fails, what the painter holds goes back: no frame will give it back."""
+    def _lending(self, runner: PassRunner) -> Iterator[None]:
+        """If this fails, the textures that the runner holds go back: no frame will give them back."""
         try:
             yield
         except BaseException:
-            self._pool.give_back(painter.lent)
+            self._pool.give_back(runner.lent)
             raise
 
-    def _shadow_maps(self, painter: Painter, scene: Scene) -> ShadowMaps:
+    def _shadow_maps(self, rasterizer: Rasterizer) -> ShadowMaps:
         """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
-        key = (scene.instances, scene.lights, painter.programs.generation)
+        key = (rasterizer.scene.instances, rasterizer.scene.lights, self._programs.generation)
         if self._shadows is None or self._shadows[0] != key:
-            self._shadows = key, draw_shadows(painter, self._geometry, scene)
+            self._shadows = key, draw_shadows(rasterizer)
         return self._shadows[1]
+
+
+def occluders(frame: FrameContext, large: Buffers) -> Occluders:
+    """What the module's choice of occluders draws; nothing where no pass of the module asks what blocks."""
+    kind = frame.module.chosen("occluders")
+    assert isinstance(kind, OccluderKind)
+    if not any(frame.runner.programs.includes(step.shader, "occluders.glsl") for step in frame.module.all_passes()):
+        return Occluders(kind.bindings())
+    return kind.draw(frame.rasterizer, frame.view, large, frame.module.sends())
 
 
 def _as_scene(scene: Any) -> Scene:

@@ -1,34 +1,40 @@
 """Runs full-screen passes: textures in by name, textures out by name, timed."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 
 import moderngl
 
 from ..errors import ShaderError, suggestion
 from ..gl import context
-from ..gl.program import Program, Programs
-from ..gl.source import Constant
-from ..gl.texture import Pool, Size
+from ..gl.bindings import Bindings, Joined, joined
+from ..gl.program import FULLSCREEN, Program, Programs
+from ..gl.texture import Depth, Pool, Size
 from ..gl.timer import Timer
 from ..modules.passes import Pass
+from ..scene.view import Region
 
 Buffers = dict[str, moderngl.Texture]
 
 
-class Painter:
+class PassRunner:
     """What all passes of one frame share: programs, the pool, the frame's textures and its timer."""
 
-    def __init__(self, programs: Programs, pool: Pool, samplers: Mapping[str, moderngl.Sampler]) -> None:
-        self.programs, self.pool, self._samplers = programs, pool, samplers
+    def __init__(self, programs: Programs, pool: Pool) -> None:
+        self.programs, self.pool = programs, pool
         self.timer = Timer()
         self.lent: list[tuple[Size, str, moderngl.Texture]] = []
+        self._borders: dict[float, moderngl.Sampler] = {}
 
-    def take(self, size: Size, format: str) -> moderngl.Texture:
-        """A texture that belongs to this frame until nobody holds the frame."""
-        texture = self.pool.take(size, format)
+    def take(self, size: Size, format: str, border: float | None = None) -> moderngl.Texture:
+        """A texture that belongs to this frame until nobody holds the frame; `border` as `Pool.take` has it."""
+        texture = self.pool.take(size, format, border)
         self.lent.append((size, format, texture))
         return texture
+
+    def targets(self, step: Pass, size: Size) -> Buffers:
+        """A texture for each output of the pass."""
+        return {name: self.take(size, format, step.outside.get(name)) for name, format in step.outputs.items()}
 
     def give_back(self, buffers: Buffers) -> None:
         """Scratch textures that the frame need not keep; the next pass may draw over them."""
@@ -39,45 +45,84 @@ class Painter:
     def run(
         self,
         step: Pass,
-        inputs: Buffers,
-        uniforms: Mapping[str, object],
+        bindings: Iterable[Bindings],
         size: Size,
-        constants: Mapping[str, Constant] | None = None,
-        aliases: Mapping[str, str] | None = None,
+        *,
         targets: Buffers | None = None,
+        region: Region | None = None,
     ) -> Buffers:
-        """Draw one pass; returns its outputs (`targets`, where given, are drawn into as they are set up)."""
-        wanted = {**(constants or {}), **step.constants}
-        program = self.programs.get(step.shader, wanted, aliases)
-        outputs = targets or {name: self.take(size, format) for name, format in step.outputs.items()}
-        program.set(uniforms)
-        self.bind(program, inputs, step.reads)
-        framebuffer = self.pool.framebuffer(list(outputs.values()))
+        """Draw one pass over the whole of `size`, or over a `region` of it; returns its outputs.
+
+        `targets`, where given, are drawn into in place of new textures. Raises `ParameterError` for a name that two of
+        the bindings give, and `ShaderError`.
+        """
+        given = joined((*bindings, *_constants(step)), f"pass '{step.name}'")
+        program = self.program(step, given)
+        outputs = targets or self.targets(step, size)
+        program.set(given.uniforms)
+        self.bind(program, given.textures, step.reads)
+        framebuffer = self.framebuffer(program, step, outputs)
+        framebuffer.viewport = region or (0, 0, *size)
         framebuffer.use()
         with self.timer.measure(step.name):
             self._fullscreen(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
-    def bind(self, program: Program, inputs: Buffers, reads: Mapping[str, str] = MappingProxyType({})) -> None:
-        """Put the textures that the program samples on units, by name; `reads` has other names (sampler: buffer)."""
-        for unit, name in enumerate(program.samplers):
-            buffer = reads.get(name, name)
-            if buffer not in inputs:
-                raise ShaderError(f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, inputs)}")
-            inputs[buffer].use(unit)
-            program.uniforms[name].value = unit
-            if sampler := self._samplers.get(name):
-                sampler.use(unit)
-            else:
-                context.get().clear_samplers(unit, unit + 1)
+    def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN) -> Program:
+        """The pass's program, with these constants and includes."""
+        return self.programs.get(
+            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes
+        )
 
-    def bind_unit(self, program: Program, name: str, unit: int) -> None:
-        """Let the program sample `name` from a unit that somebody else fills, without a sampler object in the way."""
-        if name in program.uniforms:
+    def framebuffer(
+        self, program: Program, step: Pass, targets: Buffers, depth: Depth | None = None
+    ) -> moderngl.Framebuffer:
+        """A framebuffer over the targets, each at the location of the `out` variable that fills it."""
+        locations = program.locations
+        ordered = sorted(step.outs.items(), key=lambda item: locations[item[1]])
+        return self.pool.framebuffer([targets[name] for name, _ in ordered], depth)
+
+    def bind(
+        self,
+        program: Program,
+        textures: Buffers,
+        reads: Mapping[str, str] = MappingProxyType({}),
+        units: Mapping[str, int] = MappingProxyType({}),
+    ) -> None:
+        """Put the textures that the program samples on units, by name; `reads` has other names (sampler: buffer).
+
+        `units` are samplers whose textures the caller binds, by unit.
+        """
+        free = (unit for unit in range(len(program.samplers) + len(units)) if unit not in units.values())
+        for name in program.samplers:
+            unit = units[name] if name in units else next(free)
             program.uniforms[name].value = unit
-        context.get().clear_samplers(unit, unit + 1)
+            buffer = reads.get(name, name)
+            border = None
+            if name not in units:
+                if buffer not in textures:
+                    raise ShaderError(f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, textures)}")
+                textures[buffer].use(unit)
+                border = textures[buffer].extra
+            if border is None:
+                context.get().clear_samplers(unit, unit + 1)
+            else:
+                self._border(border).use(unit)
+
+    def _border(self, value: float) -> moderngl.Sampler:
+        """Reads `value` beyond the edge of a texture, and the nearest texel within."""
+        if value not in self._borders:
+            nearest = moderngl.NEAREST, moderngl.NEAREST
+            sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=nearest)
+            sampler.border_color = (value, value, value, value)
+            self._borders[value] = sampler
+        return self._borders[value]
 
     def _fullscreen(self, program: Program) -> moderngl.VertexArray:
         if program.fullscreen is None:
             program.fullscreen = context.get().vertex_array(program.gl, [])
         return program.fullscreen
+
+
+def _constants(step: Pass) -> list[Bindings]:
+    return [Bindings(f"the pass '{step.name}'", constants=step.constants)] if step.constants else []

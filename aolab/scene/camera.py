@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
+from ..maths.transforms import look_along, perspective
 
 Vec3 = tuple[float, float, float]
 
@@ -46,16 +47,7 @@ class Camera:
     @property
     def view_from_world(self) -> np.ndarray:
         """(4, 4) float64, a rigid transform."""
-        eye = np.asarray(self.eye)
-        backward = eye - self.target
-        backward /= np.linalg.norm(backward)
-        right = np.cross(self.up, backward)
-        right /= np.linalg.norm(right)
-        rotation = np.stack([right, np.cross(backward, right), backward])
-        matrix = np.eye(4)
-        matrix[:3, :3] = rotation
-        matrix[:3, 3] = -rotation @ eye
-        return matrix
+        return look_along(np.asarray(self.eye), np.subtract(self.target, self.eye), np.asarray(self.up))
 
     def tan_half_fov(self, size: tuple[int, int]) -> tuple[float, float]:
         """Tangents of half the horizontal and vertical field of view for an image of (width, height) pixels."""
@@ -75,12 +67,7 @@ class Camera:
     def clip_from_view(self, size: tuple[int, int], bounds: np.ndarray) -> np.ndarray:
         """(4, 4) float64, OpenGL clip space."""
         near, far = self.clip_planes(bounds)
-        tan_x, tan_y = self.tan_half_fov(size)
-        matrix = np.zeros((4, 4))
-        matrix[0, 0], matrix[1, 1] = 1 / tan_x, 1 / tan_y
-        matrix[2, 2], matrix[2, 3] = -(far + near) / (far - near), -2 * far * near / (far - near)
-        matrix[3, 2] = -1
-        return matrix
+        return perspective(*self.tan_half_fov(size), near, far)
 
     @classmethod
     def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":

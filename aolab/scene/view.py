@@ -1,4 +1,4 @@
-"""A camera at a resolution, as the uniforms that every shader shares."""
+"""A camera, or another projection, at a resolution, as the uniforms that every shader shares."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,6 +9,7 @@ from ..maths.harmonics import rotation
 from .camera import Camera
 
 Size = tuple[int, int]
+Region = tuple[int, int, int, int]  # x, y, width, height in pixels; y up
 
 
 def matrix_bytes(matrix: np.ndarray) -> bytes:
@@ -24,21 +25,38 @@ def ray_scale_offset(camera: Camera, size: Size) -> tuple[float, float, float, f
 
 @dataclass(frozen=True)
 class View:
-    """`camera` drawn at `size`, with clip planes that hold the world `bounds` (2, 3)."""
+    """`camera` drawn at `size`, with clip planes that hold the world `bounds` (2, 3).
+
+    The picture may be a tile of a larger texture, an atlas of `atlas` pixels, with its lower left corner at `origin`:
+    then pixels are those of the atlas.
+    """
 
     camera: Camera
     size: Size
     bounds: np.ndarray
+    origin: tuple[int, int] = (0, 0)
+    atlas: Size | None = None
+
+    @property
+    def sheet(self) -> Size:
+        """The size of the whole texture."""
+        return self.atlas or self.size
+
+    @property
+    def region(self) -> Region:
+        """The pixels of the texture that this view covers."""
+        return *self.origin, *self.size
 
     @cached_property
     def uniforms(self) -> dict[str, object]:
         """Uniform values by name; see glsl/lib/space.glsl."""
-        scale_x, scale_y, offset_x, offset_y = ray = ray_scale_offset(self.camera, self.size)
+        scale_x, scale_y, left, bottom = ray_scale_offset(self.camera, self.size)
+        offset_x, offset_y = left - self.origin[0] * scale_x, bottom - self.origin[1] * scale_y
         view_from_world = self.camera.view_from_world
         return {
-            "ray_from_pixel": ray,
+            "ray_from_pixel": (scale_x, scale_y, offset_x, offset_y),
             "pixel_from_ray": (1 / scale_x, 1 / scale_y, -offset_x / scale_x, -offset_y / scale_y),
-            "texel_size": (1 / self.size[0], 1 / self.size[1]),
+            "texel_size": (1 / self.sheet[0], 1 / self.sheet[1]),
             "view_from_world": matrix_bytes(view_from_world),
             "world_from_view": matrix_bytes(np.linalg.inv(view_from_world)),
             "clip_from_view": matrix_bytes(self.camera.clip_from_view(self.size, self.bounds)),
@@ -53,3 +71,41 @@ class View:
         """The same view at a share of the resolution, at least one pixel a side."""
         width, height = (max(1, round(side * scale)) for side in self.size)
         return View(self.camera, (width, height), self.bounds)
+
+
+@dataclass(frozen=True)
+class Projection:
+    """Any view and projection matrix, (4, 4), at a resolution: a light's map, or a grid seen along an axis.
+
+    `origin` and `atlas` as of `View`. A shader gets the matrices and `texel_size`; it has no rays of a pinhole.
+    """
+
+    view_from_world: np.ndarray
+    clip_from_view: np.ndarray
+    size: Size
+    origin: tuple[int, int] = (0, 0)
+    atlas: Size | None = None
+
+    @property
+    def sheet(self) -> Size:
+        """The size of the whole texture."""
+        return self.atlas or self.size
+
+    @property
+    def region(self) -> Region:
+        """The pixels of the texture that this projection covers."""
+        return *self.origin, *self.size
+
+    @cached_property
+    def uniforms(self) -> dict[str, object]:
+        """Uniform values by name."""
+        return {
+            "texel_size": (1 / self.sheet[0], 1 / self.sheet[1]),
+            "view_from_world": matrix_bytes(self.view_from_world),
+            "world_from_view": matrix_bytes(np.linalg.inv(self.view_from_world)),
+            "clip_from_view": matrix_bytes(self.clip_from_view),
+            "clip_from_world": matrix_bytes(self.clip_from_view @ self.view_from_world),
+        }
+
+
+Viewpoint = View | Projection

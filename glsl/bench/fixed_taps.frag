@@ -11,13 +11,14 @@ uniform sampler2D viewZ;
 uniform vec2 texel_size;
 uniform vec4 pixel_from_ray;
 
-out float sum;
+out float visibility;  // the sum of the taps
 
 void main() {
     float centreZ = texelFetch(viewZ, ivec2(gl_FragCoord.xy), 0).r;
     vec2 uv = gl_FragCoord.xy * texel_size;
     vec2 scale = radius / max(-centreZ, 1e-20) * pixel_from_ray.xy * texel_size;
-    sum = 0.0;
+    float sum = 0.0;
     for (int i = 0; i < directions; ++i)
         for (int j = 0; j < steps; ++j) sum += texture(viewZ, uv + kernel[i].xy * scale * (float(j + 1) / float(steps))).r;
+    visibility = sum;
 }

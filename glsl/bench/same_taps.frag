@@ -17,12 +17,12 @@ uniform vec2 texel_size;
 uniform vec4 ray_from_pixel;
 uniform vec4 pixel_from_ray;
 
-out float sum;
+out float visibility;  // the sum of the taps
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float centreZ = texelFetch(viewZ, pixel, 0).r;
-    sum = 1.0;
+    visibility = 1.0;
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
@@ -31,7 +31,7 @@ void main() {
     int set = interleavedSet(pixel);
     mat3 frame = interleavedFrame(normal, set) * radius;
 
-    sum = 0.0;
+    float sum = 0.0;
     for (int i = 0; i < directions; ++i) {
         vec3 way = frame * kernel[i].xyz;
         float offset = interleavedOffset(kernel[i].w, set);
@@ -40,4 +40,5 @@ void main() {
             sum += texture(viewZ, pixelAt(samplePos, pixel_from_ray) * texel_size).r;
         }
     }
+    visibility = sum;
 }

@@ -5,7 +5,7 @@
 // centre column is -z; u increases towards +x. The first row is uploaded first, so that v is not flipped. Sample with
 // repeat in u, clamp in v, and textureLod: where u jumps from 1 to 0, derivatives would select a coarse level.
 
-const float ENVIRONMENT_PI = 3.14159265358979324;
+#include "lib/constants.glsl"
 
 // `worldDir`: world space, of any length above 0. Returns uv in [0, 1].
 vec2 environmentUv(vec3 worldDir) {
@@ -13,5 +13,5 @@ vec2 environmentUv(vec3 worldDir) {
     // atan(0, 0) is undefined in GLSL, and at the poles u has no effect
     float azimuth = across > 0.0 ? atan(worldDir.x, -worldDir.z) : 0.0;
     float polar = atan(across, worldDir.y); // = acos(d.y) for a unit vector, but precise near the poles
-    return vec2(0.5 + azimuth / (2.0 * ENVIRONMENT_PI), polar / ENVIRONMENT_PI);
+    return vec2(0.5 + azimuth / (2.0 * PI), polar / PI);
 }

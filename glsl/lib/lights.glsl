@@ -40,3 +40,12 @@ float lobesShadowOf(int i, vec3 worldPos, vec3 toLight, float facing) {
     float grazing = smoothstep(0.0, TERMINATOR, facing);
     return grazing > 0.0 ? grazing * shadowOf(i, worldPos, toLight) : 0.0;
 }
+
+// The irradiance of light `i` past its shadow map on a surface with this world-space normal, and the direction to the light.
+vec3 irradianceFrom(int i, vec3 worldPos, vec3 worldNormal, out vec3 toLight) {
+    float arriving;
+    toLight = towardsLightAt(i, worldPos, arriving);
+    arriving *= max(dot(worldNormal, toLight), 0.0);
+    if (arriving > 0.0) arriving *= shadowOf(i, worldPos, toLight);
+    return light_color[i] * arriving;
+}

@@ -5,7 +5,7 @@
 //            falloff; w, the offset of its first point, in steps.
 
 #include "lib/space.glsl"
-#include "lib/sampling.glsl"
+#include "lib/receiver.glsl"
 #include "occluders.glsl"
 
 const int directions;
@@ -19,24 +19,15 @@ uniform vec4 ray_from_pixel;
 
 const float OPEN = 2.0;   // larger than any share of a reach
 
-// The shaded point of a pixel, lifted off its surface. `frame` rotates the kernel's +z to the normal.
-struct Receiver {
-    vec3 viewPos;
-    vec3 normal;
-    mat3 frame;
-    int set;
-};
-
 // Computes the receiver of this fragment. Returns false in the background.
 bool receiverHere(out Receiver receiver) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float centreZ = texelFetch(viewZ, pixel, 0).r;
     if (isBackground(centreZ)) return false;
-    receiver.normal = texelFetch(viewNormal, pixel, 0).xyz;
-    receiver.viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    receiver.viewPos += receiver.normal * liftOff(bias * radius, radius, receiver.viewPos, ray_from_pixel);
-    receiver.set = interleavedSet(pixel);
-    receiver.frame = interleavedFrame(receiver.normal, receiver.set);
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
+    viewPos += normal * liftOff(bias * radius, radius, viewPos, ray_from_pixel);
+    receiver = receiverAt(pixel, viewPos, normal, texel_size);
     return true;
 }
 
@@ -44,7 +35,7 @@ bool receiverHere(out Receiver receiver) {
 bool isPointBlocked(Receiver receiver, int i, int j, out float along, out Occluder occluder) {
     vec3 way = receiver.frame * kernel[i].xyz * radius;
     along = (float(j) + interleavedOffset(kernel[i].w, receiver.set)) / float(steps);
-    return isBlocked(receiver.viewPos + way * along, thickness * radius, occluder);
+    return isBlocked(receiver, receiver.viewPos + way * along, thickness * radius, occluder);
 }
 
 // Is direction `i` blocked at any of its points?

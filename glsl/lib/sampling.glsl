@@ -1,6 +1,6 @@
 // Interleaved sampling: the frame of a normal, and one of 16 sample sets for each pixel of a 4×4 block.
 
-const float PI = 3.14159265358979;
+#include "lib/constants.glsl"
 
 // An orthonormal frame around the unit vector `n`, as columns (tangent, bitangent, n).
 // Duff et al. 2017, "Building an Orthonormal Basis, Revisited": no singular direction.

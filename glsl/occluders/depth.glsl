@@ -1,12 +1,8 @@
-// Occluders: one depth layer, the camera's. Every kind of occluders has these three functions.
+// Occluders: one depth layer, the camera's.
 // "A sampling point is below the surface if its distance to the viewer decreases by projecting it onto the surface"
 // (SSDO, Ritschel et al. 2009, section 3).
 
-uniform sampler2D viewZ;       // R32F; its border says -infinity: nothing is known off the screen, and nothing blocks
-uniform sampler2D viewNormal;
-uniform sampler2D sender;      // RGB radiance that leaves each surface
-uniform vec2 texel_size;       // 1 / resolution
-uniform vec4 pixel_from_ray;
+#include "occluders/surfaces.glsl"
 
 // What blocks: where, in view space, and where its properties are stored.
 struct Occluder {
@@ -14,10 +10,10 @@ struct Occluder {
     vec2 uv;
 };
 
-// Is the view-space point `samplePos` blocked, and by what? What is seen there has no known back: it is taken to be
-// `thickness` deep, so that a far foreground throws no halo (Umenhoffer et al. 2009, section 4.3: R > z - z* > 0).
-// The occluder is where the eye's ray to the point meets the surface.
-bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
+// Is the view-space point `samplePos` blocked for the receiver, and by what? The surface that is seen there has no known
+// back: it is taken to be `thickness` deep, so that a far foreground throws no halo (Umenhoffer et al. 2009, section 4.3:
+// R > z - z* > 0). The occluder is where the eye's ray to the point meets the surface.
+bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
     occluder.viewPos = samplePos * (surfaceZ / samplePos.z);

@@ -1,20 +1,16 @@
 // Occluders: peeled depth layers of the camera (SSDO, Ritschel et al. 2009, section 4; Everitt 2001). A point between the
 // two sides of a solid is blocked, and one behind it is not.
 
+#include "occluders/surfaces.glsl"
 #include "lib/solids.glsl"
 
-uniform sampler2D viewZ;
 uniform sampler2D layersZ;     // RGBA32F: viewZ of the layers 0 to 3, -infinity where there is none, and off the screen
-uniform sampler2D viewNormal;
 uniform sampler2D viewNormal1;
 uniform sampler2D viewNormal2;
 uniform sampler2D viewNormal3;
-uniform sampler2D sender;      // RGB radiance that leaves the surfaces of each layer
-uniform sampler2D sender1;
+uniform sampler2D sender1;     // RGB radiance that leaves the surfaces of each layer
 uniform sampler2D sender2;
 uniform sampler2D sender3;
-uniform vec2 texel_size;       // 1 / resolution
-uniform vec4 pixel_from_ray;
 
 // What blocks: where, in view space, and where its properties are stored.
 struct Occluder {
@@ -23,8 +19,9 @@ struct Occluder {
     int layer;
 };
 
-// Is the view-space point `samplePos` blocked, and by what? The occluder is the nearer side of the solid that it is in.
-bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
+// Is the view-space point `samplePos` blocked for the receiver, and by what? The occluder is the nearer side of the solid
+// that it is in.
+bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     vec4 z = texture(layersZ, occluder.uv);
     occluder.layer = solidAt(z, samplePos.z, thickness);

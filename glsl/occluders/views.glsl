@@ -1,74 +1,58 @@
 // Occluders: the camera's depth, and what up to four more cameras see (SSDO, Ritschel et al. 2009, section 4, "Additional
 // Cameras"). So hidden, grazing and off-screen surfaces take part.
-// The paper does not say what to do where views disagree. What one camera sees is in the open, so a point is blocked if it
-// lies behind the surface in every view that has it in its picture; of these surfaces the nearest is the occluder.
-// With peeled layers in each view, it must besides be inside a solid in one of them, in place of within the thickness.
+// The paper leaves open what happens where views disagree. Between a camera and the surface that it sees is air, so a point
+// is blocked if it lies behind the surface in every view that has it in its picture; of these surfaces the nearest is the
+// occluder. With peeled layers in each view, the point must besides be inside a solid in one of them, in place of within
+// the thickness.
 
+#include "occluders/surfaces.glsl"
 #include "lib/solids.glsl"
 
 const int views;
 const int view_layers;                       // peeled layers of each further view; 1 is plain depth
 
-uniform sampler2D viewZ;
-uniform sampler2D viewZ1;                    // of the further views: R32F, or RGBA32F with their layers
-uniform sampler2D viewZ2;
-uniform sampler2D viewZ3;
-uniform sampler2D viewZ4;
-uniform sampler2D viewNormal;
-uniform sampler2D viewNormal1;
-uniform sampler2D viewNormal2;
-uniform sampler2D viewNormal3;
-uniform sampler2D viewNormal4;
-uniform sampler2D sender;                    // RGB radiance that leaves the surfaces that each view sees
-uniform sampler2D sender1;
-uniform sampler2D sender2;
-uniform sampler2D sender3;
-uniform sampler2D sender4;
-uniform vec2 texel_size;                     // 1 / resolution
-uniform vec4 pixel_from_ray;
-uniform vec2 views_texel_size;
-uniform vec4 views_pixel_from_ray;
-uniform mat4 view_from_camera[4];            // a further view's space from the camera's view space
-uniform mat4 camera_from_view[4];
+uniform sampler2D viewsZ;                    // atlases, a tile a view: R32F, or RGBA32F with their layers
+uniform sampler2D viewsNormal;
+uniform sampler2D viewsSender;               // RGB radiance that leaves the surfaces that each view sees
+uniform vec4 tile_from_ray;                  // where a view's ray meets its picture, from -1 to 1
+uniform vec2 tile_half;                      // half the size of a tile, as uv of the atlas
+uniform float view_pixel_width;              // of a further view, at distance 1
+uniform mat4 view_from_camera[views];        // a further view's space from the camera's view space
+uniform mat4 camera_from_view[views];
 
 const float UNKNOWN = 3.0e38;
 
 // What blocks: where, in the camera's view space, and where its properties are stored. View 0 is the camera.
 struct Occluder {
     vec3 viewPos;
-    vec2 uv;
+    vec2 uv;         // of the camera's picture, or of the atlases
     int view;
 };
 
-vec4 depthsOf(int view, vec2 uv) {
-    if (view == 1) return texture(viewZ1, uv);
-    if (view == 2) return texture(viewZ2, uv);
-    if (view == 3) return texture(viewZ3, uv);
-    return texture(viewZ4, uv);
-}
-
-// Is the view-space point `samplePos` blocked, and by what? Off a view's picture its depth is +infinity: it has no say.
-bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
+// Is the view-space point `samplePos` blocked for the receiver, and by what? Off its picture, a view knows nothing.
+bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.view = 0;
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
     bool onScreen = all(lessThan(abs(occluder.uv - 0.5), vec2(0.5)));
     float depthBehind = onScreen ? surfaceZ - samplePos.z : UNKNOWN;
+    // a texel's depth is its centre's, and P was lifted for the camera's pixels, not for a view's: where the camera knows
+    // nothing, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
+    float share = onScreen ? 1.0 : 1.0 - 2.0 * view_pixel_width;  // of a distance, that must be exceeded
     bool insideSolid = false;
     vec3 thereOfNearest = samplePos;
     float nearestZ = surfaceZ;
-    for (int k = 1; k <= views; ++k) {
-        vec3 there = (view_from_camera[k - 1] * vec4(samplePos, 1.0)).xyz;
-        vec2 uv = pixelAt(there, views_pixel_from_ray) * views_texel_size;
-        vec4 z = depthsOf(k, uv);
-        if (view_layers > 1) insideSolid = insideSolid || solidAt(z, there.z, thickness) >= 0;
-        float behind = z.x - there.z;
-        // a texel's depth is its centre's, and P was lifted for the camera's pixels, not for these: where the camera has no
-        // say, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
-        if (!onScreen) behind += 2.0 * there.z / views_pixel_from_ray.x;
+    for (int k = 0; k < views; ++k) {
+        vec3 there = (view_from_camera[k] * vec4(samplePos, 1.0)).xyz;
+        vec2 inTile = pixelAt(there, tile_from_ray);
+        bool inPicture = max(abs(inTile.x), abs(inTile.y)) < 1.0;
+        vec2 uv = (inTile + vec2(2 * (k & 1) + 1, 2 * (k >> 1) + 1)) * tile_half;  // two tiles in a row
+        vec4 z = texture(viewsZ, uv);
+        if (view_layers > 1) insideSolid = insideSolid || (inPicture && solidAt(z, there.z, thickness) >= 0);
+        float behind = inPicture ? z.x - share * there.z : UNKNOWN;
         if (behind < depthBehind) {
             depthBehind = behind;
-            occluder.view = k;
+            occluder.view = k + 1;
             occluder.uv = uv;
             thereOfNearest = there;
             nearestZ = z.x;
@@ -82,18 +66,12 @@ bool isBlocked(vec3 samplePos, float thickness, out Occluder occluder) {
 
 // The occluder's unit normal, in the camera's view space.
 vec3 occluderNormal(Occluder occluder) {
-    if (occluder.view == 1) return mat3(camera_from_view[0]) * texture(viewNormal1, occluder.uv).xyz;
-    if (occluder.view == 2) return mat3(camera_from_view[1]) * texture(viewNormal2, occluder.uv).xyz;
-    if (occluder.view == 3) return mat3(camera_from_view[2]) * texture(viewNormal3, occluder.uv).xyz;
-    if (occluder.view == 4) return mat3(camera_from_view[3]) * texture(viewNormal4, occluder.uv).xyz;
-    return texture(viewNormal, occluder.uv).xyz;
+    if (occluder.view == 0) return texture(viewNormal, occluder.uv).xyz;
+    return mat3(camera_from_view[occluder.view - 1]) * texture(viewsNormal, occluder.uv).xyz;
 }
 
 // The light that leaves the occluder.
 vec3 occluderRadiance(Occluder occluder) {
-    if (occluder.view == 1) return texture(sender1, occluder.uv).rgb;
-    if (occluder.view == 2) return texture(sender2, occluder.uv).rgb;
-    if (occluder.view == 3) return texture(sender3, occluder.uv).rgb;
-    if (occluder.view == 4) return texture(sender4, occluder.uv).rgb;
-    return texture(sender, occluder.uv).rgb;
+    if (occluder.view == 0) return texture(sender, occluder.uv).rgb;
+    return texture(viewsSender, occluder.uv).rgb;
 }

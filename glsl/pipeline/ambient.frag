@@ -2,6 +2,7 @@
 // Inputs: viewNormal, albedo, visibility. Output: ambient, linear RGB radiance: albedo/π × E(n) × visibility.
 
 #include "lib/sh.glsl"
+#include "lib/constants.glsl"
 
 const bool occluded;  // multiply by `visibility`, where that is known
 
@@ -22,5 +23,5 @@ void main() {
     vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
     vec3 irradiance = max(shIrradiance(irradiance_sh, worldNormal), 0.0);  // 9 coefficients can ring below 0
     float open = occluded ? texelFetch(visibility, pixel, 0).r : 1.0;
-    ambient = vec4(surfaceAlbedo.rgb / 3.14159265358979 * irradiance * open, 1.0);
+    ambient = vec4(surfaceAlbedo.rgb / PI * irradiance * open, 1.0);
 }

@@ -17,8 +17,8 @@ uniform vec4 ray_from_pixel;
 uniform mat4 world_from_view;
 uniform float exposure;
 
-layout(location = 0) out vec4 radiance;
-layout(location = 1) out vec4 image;
+out vec4 radiance;
+out vec4 image;
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);

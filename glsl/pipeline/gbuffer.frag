@@ -1,7 +1,7 @@
 // The G-buffer: what the camera sees, before any light.
 // Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
-//          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w unused)
-//          albedo         linear diffuse albedo (RGBA16F, w unused)
+//          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w 0)
+//          surfaceAlbedo  linear diffuse albedo; a is 1 where a surface is, and 0 in the background (RGBA16F)
 
 const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
 
@@ -15,9 +15,9 @@ in vec3 viewNormal;
 in vec2 uv;
 in vec4 color;
 
-layout(location = 0) out float surfaceViewZ;
-layout(location = 1) out vec4 surfaceNormal;
-layout(location = 2) out vec4 albedo;
+out float surfaceViewZ;
+out vec4 surfaceNormal;
+out vec4 surfaceAlbedo;
 
 void main() {
     vec4 base = base_color * color * texture(base_texture, uv);
@@ -29,5 +29,5 @@ void main() {
     faceNormal = faceforward(faceNormal, viewPos, faceNormal);
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
-    albedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+    surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
 }

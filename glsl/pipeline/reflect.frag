@@ -1,6 +1,8 @@
 // Diffuse reflection of an irradiance: albedo/π × E. Occlusion, where there is any, is in E already.
 // Inputs: albedo, source (rgb irradiance). Output: reflected, linear RGB radiance.
 
+#include "lib/constants.glsl"
+
 uniform sampler2D albedo;
 uniform sampler2D source;
 
@@ -9,5 +11,5 @@ out vec4 reflected;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     vec4 surfaceAlbedo = texelFetch(albedo, pixel, 0);
-    reflected = vec4(surfaceAlbedo.rgb / 3.14159265358979 * texelFetch(source, pixel, 0).rgb, 1.0) * surfaceAlbedo.a;
+    reflected = vec4(surfaceAlbedo.rgb / PI * texelFetch(source, pixel, 0).rgb, 1.0) * surfaceAlbedo.a;
 }

@@ -10,9 +10,9 @@ uniform sampler2D albedo;
 uniform vec4 ray_from_pixel;         // of the full size
 uniform vec4 small_ray_from_pixel;
 
-layout(location = 0) out float smallViewZ;
-layout(location = 1) out vec4 smallNormal;
-layout(location = 2) out vec4 smallAlbedo;
+out float smallViewZ;
+out vec4 smallNormal;
+out vec4 smallAlbedo;
 
 void main() {
     vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, small_ray_from_pixel);

@@ -13,9 +13,9 @@ def test_what_goes_in_comes_out_upside_up(gl, format):
     """GL's first row is the bottom one; an array's is the top one."""
     components, dtype = FORMATS[format]
     values = np.arange(3 * 5 * components).reshape(3, 5, components) % 200
-    stored = values.astype({"f1": np.uint8, "f2": np.float16, "f4": np.float32}[dtype])
+    stored = values.astype({"f1": np.uint8, "f2": np.float16, "f4": np.float32, "u4": np.uint32}[dtype])
     read = texture.read(texture.make((5, 3), format, stored[::-1].tobytes()))
-    assert read.dtype == (np.uint8 if dtype == "f1" else np.float32)
+    assert read.dtype == {"f1": np.uint8, "f2": np.float32, "f4": np.float32, "u4": np.uint32}[dtype]
     assert read.flags.c_contiguous
     np.testing.assert_array_equal(read, values[..., 0] if components == 1 else values)
 

@@ -11,16 +11,20 @@ import small_scenes
 from aolab import DirectionalLight, Environment, Frame, Module, ParameterError, Pass, PointLight, Scene, paths
 from aolab.gl.texture import FORMATS
 from aolab.modules import MODULES
-from aolab.modules.parameters import describe
+from aolab.modules.filters import FILTERS
+from aolab.modules.occluders import OCCLUDERS
+from aolab.modules.parameters import Parameters, describe
 
 CHECKOUT = Path(__file__).parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
 PARAMETERS = [(name, field) for name, module in MODULES.items() for field in module.model_fields]
+CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()]
+OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: it asks for no occluders, and there is nothing to filter
 WITHOUT_EFFECT = {("none", field) for field in MODULES["none"].model_fields if field != "scale"}
 
 
-def alternatives(module: type[Module], field: str) -> list[Any]:
+def alternatives(module: type[Parameters], field: str) -> list[Any]:
     """Other values that the parameter may take: every other choice; for numbers, its bounds and multiples."""
     info = module.model_fields[field]
     choices = [value for kind in kinds(info.annotation) for value in typing.get_args(kind)]
@@ -141,6 +145,43 @@ def test_every_parameter_has_an_effect(lab, probe, name, field):
     assert any(has_effect(context) for context in contexts(module, field)) is ((name, field) not in WITHOUT_EFFECT)
 
 
+@pytest.mark.parametrize(("choice", "field"), OF_CHOICES, ids=str)
+def test_every_parameter_of_a_choice_has_an_effect(lab, probe, choice, field):
+    chosen = {choice.axis: choice.name, "radius": 1.0}
+    default = lab.render(probe, "ssao", **chosen)
+    assert any(
+        differ(lab.render(probe, "ssao", **chosen, **{field: value}), default) for value in alternatives(choice, field)
+    )
+
+
+@pytest.mark.parametrize(("choice", "field"), OF_CHOICES, ids=str)
+def test_a_parameter_of_a_choice_goes_with_that_choice_only(choice, field):
+    value = alternatives(choice, field)[0]
+    for name, module in MODULES.items():
+        chosen = module(**{choice.axis: choice.name, field: value})
+        assert getattr(chosen, field) == value
+        assert chosen.model_dump()[field] == value
+        assert chosen.replace(scale=0.5).model_dump() == {**chosen.model_dump(), "scale": 0.5}
+        with pytest.raises(
+            ParameterError, match=rf"{name}: {field} = .* is a parameter of {choice.axis}='{choice.name}'"
+        ):
+            module(**{field: value})
+        assert field not in chosen.replace(**{choice.axis: module().model_dump()[choice.axis]}).model_dump()
+
+
+@pytest.mark.parametrize("choice", CHOICES, ids=str)
+def test_a_choice_says_what_it_is(choice):
+    assert choice.name.isidentifier()
+    assert choice.__doc__ != type(choice).__mro__[1].__doc__
+    assert choice in {**OCCLUDERS, **FILTERS}.values()
+    for field in choice.model_fields:
+        about = describe(MODULES["ssao"], field)
+        assert about["with"] == f"{choice.axis}='{choice.name}'"
+        assert about["description"].endswith(".")
+        assert about["range"]
+        assert MODULES["ssao"].model_json_schema()["properties"][field]["with"] == {choice.axis: choice.name}
+
+
 @pytest.mark.parametrize(("name", "field"), PARAMETERS)
 def test_every_parameter_is_stated_whole(name, field):
     module = MODULES[name]
@@ -171,9 +212,7 @@ def test_it_says_what_it_is(name):
 
 def all_passes(module: type[Module]) -> list[Pass]:
     """Every pass that some setting of the module runs."""
-    variants = [module(**context) for context in contexts(module, "")]
-    estimates = [estimate for one in variants for estimate in (one.estimate(), one.bounce()) if estimate]
-    return [step for estimate in estimates for step in estimate.passes]
+    return [step for context in contexts(module, "") for step in module(**context).all_passes()]
 
 
 @pytest.mark.parametrize("name", MODULES)

@@ -9,7 +9,7 @@ import small_scenes
 import aolab
 from aolab import Module, ParameterError, Pass, parameter
 from aolab.modules.base import Directions, Radius
-from aolab.modules.passes import Estimate
+from aolab.modules.estimate import Estimate
 
 
 class HeightFog(Module):
@@ -82,8 +82,6 @@ def test_it_may_share_the_parts_of_the_built_in_ones(lab, wall):
         radius: Radius = "auto"
         directions: Directions = 16
         shader = """
-#include "lib/space.glsl"
-#include "lib/sampling.glsl"
 #include "occluders.glsl"
 const int directions;
 uniform float radius;
@@ -98,13 +96,12 @@ void main() {
     if (isBackground(centreZ)) return;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     viewPos += normal * liftOff(0.01 * radius, radius, viewPos, ray_from_pixel);
-    int set = interleavedSet(pixel);
-    mat3 frame = interleavedFrame(normal, set) * radius;
+    Receiver receiver = receiverAt(pixel, viewPos, normal, texel_size);
     float blocked = 0.0;
     for (int i = 0; i < directions; ++i) {
         Occluder occluder;
-        vec3 samplePos = viewPos + frame * kernel[i].xyz * interleavedOffset(kernel[i].w, set);
-        blocked += float(isBlocked(samplePos, 0.8 * radius, occluder));
+        vec3 way = receiver.frame * kernel[i].xyz * interleavedOffset(kernel[i].w, receiver.set);
+        blocked += float(isBlocked(receiver, viewPos + radius * way, 0.8 * radius, occluder));
     }
     visibility = 1.0 - blocked / float(directions);
 }

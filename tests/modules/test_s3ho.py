@@ -1,5 +1,7 @@
 """S3HO: exact coefficients, the reference's projection, light as a dot product, senders that know no light yet."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import small_scenes
@@ -8,6 +10,7 @@ import aolab
 from aolab import S3HO, DirectionalLight, Environment, Lab, ParameterError, PointLight, Scene
 from aolab.maths.harmonics import clamped_cosine, evaluate, hanning, irradiance, light_lobe, rotate, zonal_lobe
 from aolab.maths.sampling import influence
+from aolab.modules.occluders import Layers
 from aolab.modules.passes import Pass
 
 pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
@@ -322,13 +325,16 @@ def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
 def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
     """Layers behind the first one bounce with their own albedo: seen from where the boxes hide each other."""
     camera = aolab.Camera(eye=(-5.0, 1.2, 0.6), target=(0, 0.5, 0), fov=35)
-    settings = {"indirect": True, "radius": 1.0, "steps": 8, "occluders": "layers", "camera": camera, "filter": "none"}
+    settings = {"indirect": True, "radius": 1.0, "steps": 8, "camera": camera, "filter": "none"}
 
-    class FirstOnly(S3HO):
-        def sends(self) -> bool:
-            return False
+    class ColouredAsTheFirst(Layers):
+        def draw(self, drawing, view, surfaces, sends):
+            drawn = super().draw(drawing, view, surfaces, sends)
+            first = {f"sender{number}": surfaces["albedo"] for number in (1, 2, 3)}
+            return replace(drawn, bindings=replace(drawn.bindings, textures={**drawn.bindings.textures, **first}))
 
-    whole, first = (lab.render(boxes, kind(), **settings)["indirect"] for kind in (S3HO, FirstOnly))
+    kinds = Layers(), ColouredAsTheFirst()
+    whole, first = (lab.render(boxes, "s3ho", occluders=kind, **settings)["indirect"] for kind in kinds)
     assert np.abs(whole - first).max() > 0.05
 
 

@@ -125,9 +125,12 @@ def test_module_without_visibility_is_left_out_and_said(boxes: aolab.Scene):
     class Colour(aolab.Module):
         name = "colour"
         shader = "none.frag"
-        outputs = {"ambient": "RGBA16F"}  # noqa: RUF012
+        outputs = {"colour": "R16F"}  # noqa: RUF012
 
-    with pytest.warns(Notice, match="colour is left out: it gives ambient, no visibility"):
+        def passes(self) -> list[aolab.Pass]:
+            return [aolab.Pass("colour", self.shader, self.outputs, writes={"visibility": "colour"})]
+
+    with pytest.warns(Notice, match="colour is left out: it gives colour, no visibility"):
         measured = curve(boxes, [Colour, "none"], **FEW)
     assert [point.module for point in measured.points] == ["none"]
 

@@ -1,0 +1,82 @@
+"""The table of buffers: each name has one meaning in renders, references, comparisons and docs. Modules extend it."""
+
+from dataclasses import dataclass
+from math import inf, nan
+from typing import Literal
+
+Kind = Literal["share", "displayed", "radiance", "direction", "harmonics", "length", "numbers"]
+
+
+@dataclass(frozen=True)
+class Buffer:
+    """One buffer: `channels` count from the first; further channels of `format` are padding.
+
+    `format` is "" where no pass of a render fills the buffer. `background` is the value of `frame[name]` where nothing
+    was drawn. `kind` decides how `aolab.compare` measures and shows the buffer. `about` is one sentence.
+    """
+
+    name: str
+    channels: int
+    format: str
+    unit: str
+    background: float
+    kind: Kind
+    about: str
+
+
+def _table(*rows: Buffer) -> dict[str, Buffer]:
+    return {row.name: row for row in rows}
+
+
+_RADIANCE = "radiance"  # in the unit of the scene's lights and environment
+_HARMONICS = "Coefficients {} to {} of the visibility times the cosine, in spherical harmonics, world space."
+
+# drawn from the scene's triangles before any module's pass
+SURFACES = _table(
+    Buffer("viewZ", 1, "R32F", "scene units", -inf, "length", "The view-space z of the surface, negative."),
+    Buffer("viewNormal", 3, "RGBA16F", "", 0, "direction", "The surface's unit normal in view space."),
+    Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
+)
+
+# made from an estimate by the lighting and the composition
+LIT = _table(
+    Buffer("direct", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The light of the lamps that the surface reflects."),
+    Buffer("ambient", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The environment's light that the surface reflects."),
+    Buffer("indirect", 3, "RGBA16F", _RADIANCE, 0, "radiance", "One bounce of light that the surface reflects."),
+    Buffer("sender", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The light that leaves each surface before any bounce."),
+    Buffer("radiance", 3, "RGBA16F", _RADIANCE, nan, "radiance", "The sum of all light, over the environment."),
+    Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", nan, "displayed", "The radiance, tone mapped, for a screen."),
+)
+
+# what the lighting takes from a module: an output of one of these names has this meaning
+CONTRACT = _table(
+    Buffer("visibility", 1, "R16F", "", nan, "share", "The open share of the hemisphere, weighted by the cosine."),
+    Buffer(
+        "irradiance", 3, "RGBA16F", "irradiance", 0, "numbers",
+        "The environment's irradiance with occlusion; the lighting reflects it as `ambient`.",
+    ),
+    Buffer(
+        "bounce", 3, "RGBA16F", "irradiance", 0, "numbers",
+        "The irradiance of one bounce; the lighting reflects it as `indirect`.",
+    ),
+    Buffer(
+        "light_share", 3, "RGBA16F", "", 1, "share",
+        "The share of the lights' irradiance that arrives; `direct` is multiplied by it.",
+    ),
+)  # fmt: skip
+
+# further quantities that methods and the reference have in common
+SHARED = _table(
+    Buffer("bent_normal", 3, "", "", 0, "direction", "The mean open direction, weighted by the cosine, world space."),
+    *(Buffer(f"sh{i}", 4, "", "", 0, "harmonics", _HARMONICS.format(4 * i, 4 * i + 3)) for i in range(4)),
+    Buffer("standard_error", 1, "", "", nan, "numbers", "The standard error of the reference's visibility."),
+    Buffer("obscurance", 1, "", "", 0, "share", "The mean of a distance measure over the hemisphere."),
+    Buffer(
+        "transfer", 3, "", "", 0, "share", "The share of a constant sky that arrives, by one formula for all bounces."
+    ),
+    Buffer(
+        "transfer_multibounce", 3, "", "", 0, "share", "The share of a constant sky that arrives over many bounces."
+    ),
+)
+
+BUFFERS: dict[str, Buffer] = SURFACES | LIT | CONTRACT | SHARED

@@ -1,0 +1,22 @@
+"""What an estimate is: passes over sample sets whose outputs are averaged, filtered and brought to full size."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from .filters import Filter
+from .passes import Pass
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """`passes` run once for each sample set, at the module's scale; they fill the noisy `outputs` (name: format).
+
+    The outputs are averaged over the sample sets, filtered, and brought to full size. `once` are passes before the
+    others, at full size, that no sample set changes: voxels, or a light's G-buffer. `filter` replaces the module's own
+    choice.
+    """
+
+    passes: Sequence[Pass]
+    outputs: Mapping[str, str]
+    once: Sequence[Pass] = ()
+    filter: Filter | None = None

@@ -1,0 +1,40 @@
+"""The interface of a filter: the passes that remove an estimate's noise, and the shader that brings it to full size."""
+
+from collections.abc import Mapping
+from typing import ClassVar
+
+from ..parameters import Choice
+from ..passes import Pass
+
+MOST_SOURCES = 4  # textures a pass: with those of the geometry, well below the 16 that a shader may read
+
+
+class Filter(Choice):
+    """A way to remove noise. A subclass states its parameters, and these facts:
+
+    `name` (lower case); `passes`; `upsampling`, the shader that brings an estimate of a lower `scale` to full size; and
+    `at_full_size`, whether the passes run after the upsampling in place of before it. Each pass reads up to four
+    buffers as `source0` to `source3` and writes `results` (lib/sources.glsl), and may read viewZ, viewNormal and albedo
+    at its size. The upsampling shader reads besides smallViewZ and smallNormal. The filter's numbers are uniforms and
+    constants of all of these shaders by themselves.
+    """
+
+    axis: ClassVar[str] = "filter"
+    upsampling: ClassVar[str] = "pipeline/upsample.frag"
+    at_full_size: ClassVar[bool] = False
+
+    def passes(self, formats: Mapping[str, str]) -> list[Pass]:
+        """The passes over up to four buffers, `formats` (name: format); each reads the results of the one before it."""
+        return []
+
+
+def over_sources(name: str, shader: str, formats: Mapping[str, str], **constants: bool | int | float) -> Pass:
+    """A pass that treats up to four buffers alike: it reads them as sources and writes each as a result."""
+    writes = {f"results[{number}]": buffer for number, buffer in enumerate(formats)}
+    return Pass(titled(name, formats), shader, formats, {"sources": len(formats), **constants}, writes=writes)
+
+
+def titled(what: str, names: Mapping[str, str]) -> str:
+    """The name in timings: 'filter visibility', 'filter occlusion0 to occlusion3'."""
+    first, *others = names
+    return f"{what} {first}" + (f" to {others[-1]}" if others else "")

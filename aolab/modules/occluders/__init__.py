@@ -1,0 +1,8 @@
+"""What is tested for blocking: one kind a file. This table is all the registry there is."""
+
+from .base import OccluderKind
+from .depth import Depth
+from .layers import Layers
+from .views import Views
+
+OCCLUDERS: dict[str, type[OccluderKind]] = {kind.name: kind for kind in (Depth, Layers, Views)}

@@ -1,0 +1,135 @@
+"""Draws the scene's triangles: G-buffers, depth layers, and the geometry passes of modules and occluder kinds."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
+
+import moderngl
+
+from ..gl import context, raw
+from ..gl.bindings import Bindings, joined
+from ..gl.texture import Depth, attach
+from ..modules.passes import GeometryPass, Pass
+from ..scene.scene import Scene
+from ..scene.view import Size, View, Viewpoint
+from .geometry import Geometry
+from .pass_runner import Buffers, PassRunner
+from .surfaces import G_BUFFER, g_buffer
+
+
+class DepthTargets:
+    """Depth buffers by size: scratch space that no frame keeps."""
+
+    def __init__(self) -> None:
+        self._depth: dict[Size, moderngl.Renderbuffer] = {}
+
+    def of(self, size: Size) -> moderngl.Renderbuffer:
+        """A depth buffer of unspecified content."""
+        if size not in self._depth:
+            if len(self._depth) >= 4:  # the image, and the further views; older ones are of sizes left behind
+                self._depth.clear()
+            depth = context.get().depth_renderbuffer(size)
+            attach([], depth)  # refuses one that the driver had no memory for
+            self._depth[size] = depth
+        return self._depth[size]
+
+
+class Rasterizer:
+    """Draws one scene for the frame of one runner. An occluder kind draws through it (`modules.occluders.Drawing`)."""
+
+    def __init__(self, runner: PassRunner, geometry: Geometry, depth: DepthTargets, scene: Scene) -> None:
+        self.runner, self.geometry, self.depth, self.scene = runner, geometry, depth, scene
+
+    def surfaces(self, views: Sequence[View], name: str = "g_buffer", formats: Mapping[str, str] = G_BUFFER) -> Buffers:
+        """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`."""
+        return self.triangles(g_buffer(name, formats, atlas=len(views) > 1), views)
+
+    def peeled(
+        self,
+        nearest: moderngl.Texture,
+        count: int,
+        views: Sequence[View],
+        formats: Mapping[str, str] = G_BUFFER,
+    ) -> list[Buffers]:
+        """Up to `count` further depth layers behind `nearest` (viewZ); fewer where nothing is left."""
+        behind: list[Buffers] = []
+        while len(behind) < count:
+            layer = self.peel(behind[-1]["viewZ"] if behind else nearest, views, formats)
+            if layer is None:
+                break
+            behind.append(layer)
+        return behind
+
+    def peel(
+        self, nearer: moderngl.Texture, views: Sequence[View], formats: Mapping[str, str] = G_BUFFER
+    ) -> Buffers | None:
+        """The G-buffer of what lies behind `nearer` (viewZ), or None where nothing does. Normals are the mesh's own."""
+        drawn = context.get().query(samples=True)
+        with drawn:
+            step = g_buffer("peel", formats, peel=True)
+            buffers = self.triangles(step, views, [Bindings("the nearer layer", {"nearerZ": nearer})])
+        if drawn.samples == 0:
+            self.runner.give_back(buffers)
+            return None
+        return buffers
+
+    def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Buffers:
+        """The outputs of a geometry pass, seen from where it says; `view` is the camera's."""
+        seen_from = view if step.seen_from is None else step.seen_from(self.scene, view)
+        return self.triangles(step, [seen_from], bindings)
+
+    def run(self, step: Pass, bindings: Iterable[Bindings], size: Size) -> Buffers:
+        """The outputs of a full-screen pass."""
+        return self.runner.run(step, bindings, size)
+
+    def triangles(
+        self,
+        step: GeometryPass,
+        viewpoints: Sequence[Viewpoint],
+        bindings: Iterable[Bindings] = (),
+        depth: Depth | None = None,
+    ) -> Buffers:
+        """Draw the triangles from each viewpoint into its region of the outputs; `depth` in place of a scratch one."""
+        gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
+        # of each mesh in turn, by Geometry.draw
+        mesh = Bindings("the mesh", uniforms={"base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
+        own = [*bindings, mesh, Bindings(f"the pass '{step.name}'", constants=step.constants)]
+        place = f"pass '{step.name}'"
+        tested = step.combine == "nearest"
+        targets = runner.targets(step, size)
+        with runner.timer.measure(step.name):
+            program = framebuffer = None
+            for viewpoint in viewpoints:
+                given = joined([*own, Bindings("the view", uniforms=viewpoint.uniforms)], place)
+                if program is None or framebuffer is None:
+                    program = runner.program(step, given, step.vertex)
+                    depth = (depth or self.depth.of(size)) if tested else None
+                    # a depth texture alone is not kept in the pool, which would keep it for good
+                    framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
+                    _clear(runner, framebuffer, step, targets, size)
+                    runner.bind(program, given.textures, step.reads, {"base_texture": 0})
+                program.set(given.uniforms)
+                framebuffer.viewport = viewpoint.region
+                framebuffer.use()
+                gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
+                with nullcontext() if tested else raw.or_bits():
+                    self.geometry.draw(self.scene, program)
+            gl.enable_only(moderngl.NOTHING)
+        return targets
+
+
+def _clear(
+    runner: PassRunner, framebuffer: moderngl.Framebuffer, step: GeometryPass, targets: Buffers, size: Size
+) -> None:
+    """Fill the depth with 1 and each target with its `clear` value."""
+    framebuffer.viewport = 0, 0, *size
+    whole_numbers = any(texture.dtype == "u4" for texture in targets.values())
+    if not whole_numbers:
+        framebuffer.clear(0.0, 0.0, 0.0, 0.0, depth=1.0)
+    for name, texture in targets.items():
+        value = step.clear.get(name, 0.0)
+        alone = runner.pool.framebuffer([texture])
+        alone.viewport = 0, 0, *size
+        if texture.dtype == "u4":
+            raw.clear_integers(alone, 0, int(value))
+        elif value or whole_numbers:
+            alone.clear(value, value, value, value)

@@ -1,0 +1,76 @@
+"""What the passes of one frame share, and what of it is kept so that the frame can be lit again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from ..gl.bindings import Bindings
+from ..modules import Module
+from ..modules.filters import Filter
+from ..modules.occluders.base import Occluders
+from ..scene.scene import Scene
+from ..scene.view import View
+from .pass_runner import Buffers, PassRunner
+from .rasterizer import Rasterizer
+
+
+@dataclass(frozen=True, eq=False)
+class FrameContext:
+    """What all passes of one frame share: the means to draw, the module, the camera's view and the sample sets.
+
+    `seeds` are averaged over.
+    """
+
+    rasterizer: Rasterizer
+    module: Module
+    view: View
+    seeds: range
+
+    @property
+    def runner(self) -> PassRunner:
+        return self.rasterizer.runner
+
+    @property
+    def scene(self) -> Scene:
+        return self.rasterizer.scene
+
+    @property
+    def filter(self) -> Filter:
+        """The filter that the module has chosen."""
+        chosen = self.module.chosen("filter")
+        assert isinstance(chosen, Filter)
+        return chosen
+
+    @property
+    def parameters(self) -> Bindings:
+        """The module's numbers, as uniforms and as constants."""
+        numbers = self.module.numbers()
+        return Bindings(f"the parameters of {self.module.label()}", uniforms=numbers, constants=numbers)
+
+    def samples(self, seed: int) -> Bindings:
+        """The sample set of one seed."""
+        return Bindings("the samples", uniforms=self.module.samples(seed))
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceState:
+    """All of a frame that light has no part in: a frame keeps it, so that it can be lit again.
+
+    `large` are the surfaces at full size, `small` those at the module's scale, with `small_view`. `estimate` holds the
+    module's outputs unless the module is `lit`.
+    """
+
+    frame: FrameContext
+    large: Buffers
+    small: Buffers
+    small_view: View
+    occluders: Occluders
+    estimate: Buffers
+
+    @property
+    def known(self) -> Sequence[Bindings]:
+        """The buffers at full size, for passes over the whole picture."""
+        return Bindings("the surfaces", self.large), Bindings("the estimate", self.estimate)
+
+    def under(self, rasterizer: Rasterizer) -> "SurfaceState":
+        """The same, with other means to draw: those of a new frame."""
+        return replace(self, frame=replace(self.frame, rasterizer=rasterizer))

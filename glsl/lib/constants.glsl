@@ -1,0 +1,3 @@
+// The one constant that every shader needs.
+
+const float PI = 3.14159265358979324;
