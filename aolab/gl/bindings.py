@@ -1,4 +1,4 @@
-"""What a shader may read, each name with its owner: a name that two owners give is an error."""
+"""The values that shaders read, each name with its owner: a name that two owners give is an error."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -27,7 +27,7 @@ class Bindings:
 
 @dataclass(frozen=True)
 class Joined:
-    """All that a pass may read, whoever owns it; fields as in `Bindings`."""
+    """The bindings of all owners together; fields as in `Bindings`."""
 
     textures: dict[str, moderngl.Texture]
     uniforms: dict[str, object]

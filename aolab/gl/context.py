@@ -12,7 +12,7 @@ import moderngl
 
 from ..errors import ContextError
 
-REQUIRED = 330  # OpenGL 3.3 core: what every course machine has (macOS stops at 4.1)
+REQUIRED = 330  # OpenGL 3.3 core, which every machine of a course has (macOS stops at 4.1)
 _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "SwiftShader", "Microsoft Basic Render")
 
 # by their loader names: a search by linker name misses libraries in private folders (conda, LD_LIBRARY_PATH)

@@ -43,7 +43,7 @@ class Program:
             )
 
     def set(self, values: Mapping[str, object]) -> None:
-        """Set every uniform that is not a sampler from `values`; one that nothing gives is an error."""
+        """Set every uniform that is not a sampler from `values`. Raises `ShaderError` for a uniform without a value."""
         for name, uniform in self.uniforms.items():
             if _is_sampler(uniform):
                 continue
@@ -78,7 +78,7 @@ def _stamp(path: Path) -> int:
 
 @dataclass(frozen=True)
 class Request:
-    """What a program is made of. `constants` are on offer: a shader takes those that it declares.
+    """The sources of a program. `constants` are on offer: a shader takes those that it declares.
 
     `outputs` are the `out` variables that are drawn, in the order of their locations; None checks none of them.
     `optional` are `out` variables that the shader may have besides.

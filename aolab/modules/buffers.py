@@ -48,7 +48,7 @@ LIT = _table(
     Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", nan, "displayed", "The radiance, tone mapped, for a screen."),
 )
 
-# what the lighting takes from a module: an output of one of these names has this meaning
+# read by the lighting: a module's output of one of these names has this meaning
 CONTRACT = _table(
     Buffer("visibility", 1, "R16F", "", nan, "share", "The open share of the hemisphere, weighted by the cosine."),
     Buffer(

@@ -1,4 +1,4 @@
-"""What an estimate is: passes over sample sets whose outputs are averaged, filtered and brought to full size."""
+"""Estimates: passes over sample sets whose outputs are averaged, filtered and brought to full size."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass

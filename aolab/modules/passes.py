@@ -1,4 +1,4 @@
-"""What a pass is: one shader, over the whole screen or over the scene's triangles, and the textures it fills."""
+"""Passes: one shader, over the whole screen or over the scene's triangles, and the textures it fills."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
@@ -52,7 +52,7 @@ class GeometryPass(Pass):
     combine: Literal["nearest", "or"] = "nearest"
 
 
-# Lighting, as every method has it unless it says otherwise: lights through shadow maps, the environment by its SH
+# The lighting of methods without their own: lights through shadow maps, the environment by its spherical harmonics
 DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"}, {"shared_light": False})
 # the same, times the buffer `light_share`, the share of the lights' irradiance that arrives
 SHARED_DIRECT = replace(DIRECT, constants={"shared_light": True})

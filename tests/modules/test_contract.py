@@ -1,4 +1,4 @@
-"""What holds for every module; a new one needs no edit here."""
+"""Properties of every module; a new module needs no edit here."""
 
 import typing
 from pathlib import Path
@@ -170,7 +170,7 @@ def test_a_parameter_of_a_choice_goes_with_that_choice_only(choice, field):
 
 
 @pytest.mark.parametrize("choice", CHOICES, ids=str)
-def test_a_choice_says_what_it_is(choice):
+def test_a_choice_is_described(choice):
     assert choice.name.isidentifier()
     assert choice.__doc__ != type(choice).__mro__[1].__doc__
     assert choice in {**OCCLUDERS, **FILTERS}.values()

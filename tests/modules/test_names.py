@@ -200,7 +200,7 @@ def test_as_many_textures_as_opengl_guarantees_are_read_and_not_one_more(lab, bo
 
 @pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")
 def test_every_kind_of_occluders_leaves_textures_to_its_module(lab, boxes):
-    """Of the 16, a pass that asks for blockers, their normals and light has at least 5 left."""
+    """At least 5 of the 16 textures are left to a pass that reads occluders with their normals and light."""
     more = [f"more{number}" for number in range(5)]
     for kind in ("depth", "layers", "views"):
 

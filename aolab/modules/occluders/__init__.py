@@ -1,4 +1,4 @@
-"""What is tested for blocking: one kind a file. This table is all the registry there is."""
+"""The kinds of occluders, a file each. This table is all the registry there is."""
 
 from .base import OccluderKind
 from .depth import Depth

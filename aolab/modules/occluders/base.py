@@ -77,7 +77,7 @@ class OccluderKind(Choice):
     - `vec3 occluderRadiance(Occluder occluder)`, the light that leaves it.
 
     `draw` returns the textures and uniforms that the shader reads beyond the camera's G-buffer. The kind's numbers are
-    uniforms and constants of its shader by themselves. `uniforms` lists the names of further ones, so that no module's
+    uniforms and constants of its shader. `uniforms` lists the names of further ones, so that no module's
     parameter takes them.
     """
 
@@ -88,7 +88,7 @@ class OccluderKind(Choice):
     def draw(self, drawing: Drawing, view: View, surfaces: Textures, sends: bool) -> Occluders:
         """Draw for a frame seen from `view`, whose G-buffer is `surfaces`.
 
-        `sends` is whether the module asks for normals and light of what blocks; without it, depths are enough.
+        With `sends`, the module reads normals and light of occluders; without it, depths are enough.
         """
         return Occluders(self.bindings())
 

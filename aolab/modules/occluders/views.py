@@ -1,4 +1,4 @@
-"""Occluders: the camera's depth, and what further cameras see."""
+"""Occluders: the camera's depth, and the depths of further cameras."""
 
 from dataclasses import replace
 
@@ -17,7 +17,7 @@ DISPLACEMENTS = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.6, 
 
 
 class Views(OccluderKind):
-    """What `views` further cameras see, at `view_scale` of the resolution, each with `view_layers` peeled layers.
+    """The surfaces of `views` further cameras, at `view_scale` of the resolution, with `view_layers` peeled layers each.
 
     The pictures of all views are tiles of one atlas for each quantity, two in a row.
     """
