@@ -5,6 +5,7 @@ from typing import Literal
 
 import numpy as np
 
+from ..modules import known_buffers
 from ..truth.picture import shown
 
 
@@ -24,27 +25,24 @@ class Kind:
     error: Literal["signed", "angle", "norm"] = "signed"
 
 
-SHARE = Kind("", "direct")
-DISPLAYED = Kind("sRGB, 0 to 1", "direct")
-RADIANCE = Kind("radiance", "tone mapped")
-DIRECTION = Kind("degrees", error="angle")
-HARMONICS = Kind("", error="norm")
-LENGTH = Kind("scene units")
-NUMBERS = Kind("")
-
-KINDS = {
-    **dict.fromkeys(("visibility", "obscurance", "transfer", "transfer_multibounce", "albedo"), SHARE),
-    **dict.fromkeys(("direct", "ambient", "indirect", "radiance"), RADIANCE),
-    **dict.fromkeys(("viewNormal", "bent_normal"), DIRECTION),
-    **dict.fromkeys(("sh", *(f"sh{i}" for i in range(4)), *(f"sh_band{i}" for i in range(4))), HARMONICS),
-    "viewZ": LENGTH,
-    "image": DISPLAYED,
+KINDS: dict[str, Kind] = {
+    "share": Kind("", "direct"),
+    "displayed": Kind("sRGB, 0 to 1", "direct"),
+    "radiance": Kind("radiance", "tone mapped"),
+    "direction": Kind("degrees", error="angle"),
+    "harmonics": Kind("", error="norm"),
+    "length": Kind("scene units"),
+    "numbers": Kind(""),
 }
 
 
 def kind_of(name: str) -> Kind:
-    """The kind of the buffer `name`, or of the one that `name` is the unfiltered estimate of; NUMBERS if unknown."""
-    return KINDS.get(name.removesuffix("_raw"), NUMBERS)
+    """The kind of the buffer `name`, filtered or not, by the table of buffers; plain numbers if the table lacks it."""
+    name = name.removesuffix("_raw")
+    if name == "sh" or name.startswith("sh_band"):  # all coefficients together, and bands of them (`pairing`)
+        name = "sh0"
+    buffers = known_buffers()
+    return KINDS[buffers[name].kind if name in buffers else "numbers"]
 
 
 def picture(values: np.ndarray, kind: Kind) -> np.ndarray:

@@ -216,13 +216,22 @@ class Module(Parameters):
         choice = self.choices[axis][value]
         return choice(**{name: (self.model_extra or {})[name] for name in choice.model_fields})
 
+    @classmethod
+    def changed(cls, values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+        """The values with some changed. Another choice starts with its own defaults: those of the old one are dropped."""
+        stated = cls.stated()
+        dropped = {
+            name
+            for name in values
+            if (choice := stated.get(name)) and issubclass(choice, Choice)
+            if changes.get(choice.axis, values.get(choice.axis)) != values.get(choice.axis)
+        }
+        return {name: value for name, value in values.items() if name not in dropped} | dict(changes)
+
     def replace(self, **changes: object) -> Self:
         """The same with some values changed, validated again. Another choice starts with its own defaults."""
-        kept = {name: getattr(self, name) for name in type(self).model_fields}
-        for axis in self.choices:
-            if changes.get(axis, kept[axis]) == kept[axis] and isinstance(kept[axis], str):
-                kept |= self.chosen(axis).model_dump()
-        return type(self)(**{**kept, **changes})
+        values = {name: getattr(self, name) for name in type(self).model_fields} | (self.model_extra or {})
+        return type(self)(**self.changed(values, changes))
 
     @property
     def occlusion_radius(self) -> float | None:

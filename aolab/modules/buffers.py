@@ -9,17 +9,18 @@ Kind = Literal["share", "displayed", "radiance", "direction", "harmonics", "leng
 
 @dataclass(frozen=True)
 class Buffer:
-    """One buffer: `channels` count from the first; further channels of `format` are padding.
+    """A row of the table.
 
-    `format` is "" where no pass of a render fills the buffer. `background` is the value of `frame[name]` where nothing
-    was drawn. `kind` decides how `aolab.compare` measures and shows the buffer. `about` is one sentence.
+    `channels` count from the first; further channels of `format` are padding. `format` is "" where no pass of a render
+    fills the buffer. `background` is the value of `frame[name]` where nothing was drawn; None is the environment's.
+    `kind` decides how `aolab.compare` measures and shows the buffer. `about` is one sentence.
     """
 
     name: str
     channels: int
     format: str
     unit: str
-    background: float
+    background: float | None
     kind: Kind
     about: str
 
@@ -31,9 +32,11 @@ def _table(*rows: Buffer) -> dict[str, Buffer]:
 _RADIANCE = "radiance"  # in the unit of the scene's lights and environment
 _HARMONICS = "Coefficients {} to {} of the visibility times the cosine, in spherical harmonics, world space."
 
+BACKGROUND_Z = -inf  # viewZ where nothing was drawn, and off the screen
+
 # drawn from the scene's triangles before any module's pass
 SURFACES = _table(
-    Buffer("viewZ", 1, "R32F", "scene units", -inf, "length", "The view-space z of the surface, negative."),
+    Buffer("viewZ", 1, "R32F", "scene units", BACKGROUND_Z, "length", "The view-space z of the surface, negative."),
     Buffer("viewNormal", 3, "RGBA16F", "", 0, "direction", "The surface's unit normal in view space."),
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
@@ -44,8 +47,8 @@ LIT = _table(
     Buffer("ambient", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The environment's light that the surface reflects."),
     Buffer("indirect", 3, "RGBA16F", _RADIANCE, 0, "radiance", "One bounce of light that the surface reflects."),
     Buffer("sender", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The light that leaves each surface before any bounce."),
-    Buffer("radiance", 3, "RGBA16F", _RADIANCE, nan, "radiance", "The sum of all light, over the environment."),
-    Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", nan, "displayed", "The radiance, tone mapped, for a screen."),
+    Buffer("radiance", 3, "RGBA16F", _RADIANCE, None, "radiance", "The sum of all light, over the environment."),
+    Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", None, "displayed", "The radiance, tone mapped, for a screen."),
 )
 
 # read by the lighting: a module's output of one of these names has this meaning

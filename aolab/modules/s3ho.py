@@ -8,6 +8,7 @@ import numpy as np
 from ..maths.harmonics import clamped_cosine, rotation
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
+from .buffers import Buffer
 from .marched import Marched
 from .parameters import parameter
 from .passes import AMBIENT, DIRECT, Pass
@@ -53,6 +54,14 @@ class S3HO(Marched):
         **{f"sh{i}": _column(i) for i in range(4)},
         "visibility": _visibility,
     }
+
+    buffers: ClassVar = (
+        *(
+            Buffer(name, 4, "RGBA16F", "", 0, "numbers", "Coefficients that occlusion takes away.")
+            for name in OCCLUSION
+        ),
+        *(Buffer(name, 4, "RGBA16F", "", 0, "numbers", "Coefficients of the bounce, packed.") for name in BOUNCE),
+    )
 
     strength: float = parameter(
         0.0, "λ: what blocks at distance d lets 1 - 1/(1 + λ d) through; 0 blocks wholly, as rays do.", ge=0, le=100,

@@ -5,6 +5,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from ..scene.cones import SLICES, TEXELS, Cones
+from .buffers import Buffer
 from .marched import Marched
 from .parameters import parameter
 from .passes import AMBIENT, DIRECT, Pass
@@ -50,6 +51,12 @@ class SSBN(Marched):
     shader = "ssbn.frag"
     outputs: ClassVar = {"blocked_direction": "RGBA16F"}
     derived: ClassVar = {"bent_normal": _bent_normal, "visibility": _visibility}
+    buffers: ClassVar = (
+        Buffer(
+            "blocked_direction", 4, "RGBA16F", "", 0, "numbers",
+            "The sum of the blocked directions, world space (rgb), and the blocked share (a), by their weights.",
+        ),
+    )  # fmt: skip
 
     weighting: Literal["cosine", "uniform"] = parameter(
         "cosine", "Weights of directions in the bent normal: their cosine, or uniform as in the paper."

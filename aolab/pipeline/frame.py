@@ -13,14 +13,11 @@ from PIL import Image
 
 from ..errors import ParameterError, suggestion
 from ..gl.texture import Pool, read
+from ..modules.buffers import BUFFERS, Buffer
 from ..pictures.metadata import save_png
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 
-# how many channels of a texture mean something; the others are padding
-_RGB = ("viewNormal", "albedo", "direct", "ambient", "indirect", "irradiance", "bounce", "radiance", "image")
-# scalars that have no value where nothing was drawn
-_NAN_IN_BACKGROUND = ("visibility",)
 Holder = TypeVar("Holder")
 
 
@@ -41,6 +38,7 @@ class Frame:
     notes: list[str] = field(default_factory=list)
     # read off other buffers: each a function of the frame and of "" or "_raw"
     derived: Mapping[str, tuple[Callable[[Self, str], np.ndarray], str]] = field(default_factory=dict)
+    table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # what is known of the buffers
     scene: Scene | None = field(default=None, repr=False)  # what is shown, as it was lit
     kept: Any = field(default=None, repr=False)  # what its lab needs to light it again
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
@@ -64,10 +62,11 @@ class Frame:
                 pixels = make(self, raw)
             else:
                 pixels = self.channels(name)
-            if name.removesuffix("_raw") in _RGB:
-                pixels = np.ascontiguousarray(pixels[..., :3])
-            if name.removesuffix("_raw") in _NAN_IN_BACKGROUND and pixels.shape == self["viewZ"].shape:
-                pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
+            if about := self.table.get(name.removesuffix("_raw")):
+                if pixels.ndim == 3 and pixels.shape[2] > about.channels:
+                    pixels = np.ascontiguousarray(pixels[..., : about.channels])
+                if about.background is not None and np.isnan(about.background) and pixels.shape == self["viewZ"].shape:
+                    pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
             self._arrays[name] = pixels
         return self._arrays[name]
 

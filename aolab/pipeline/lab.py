@@ -14,6 +14,7 @@ from ..gl.bindings import Bindings
 from ..gl.program import Programs
 from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
 from ..modules import MODULES, Module, find
+from ..modules.buffers import BUFFERS
 from ..modules.occluders import OccluderKind
 from ..modules.occluders.base import Occluders
 from ..scene.camera import Camera
@@ -204,7 +205,8 @@ class Lab:
             "triangles": scene.triangles,
         }
         derived = {f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")}
-        result = Frame(buffers, runner.timer.result(), info, derived=derived, scene=scene, kept=kept)
+        table = BUFFERS | {row.name: row for row in module.buffers}
+        result = Frame(buffers, runner.timer.result(), info, derived=derived, table=table, scene=scene, kept=kept)
         return lend(result, self._pool, runner.lent)
 
     @contextmanager

@@ -3,14 +3,14 @@
 from collections.abc import Mapping
 
 from ..gl.bindings import Bindings
-from ..modules.buffers import SURFACES
+from ..modules.buffers import BACKGROUND_Z, SURFACES
 from ..modules.passes import GeometryPass, Pass
 from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
 
 G_BUFFER = {name: buffer.format for name, buffer in SURFACES.items()}
 # off the screen, where nothing is known, the depth is the background's: nothing blocks
-_OUTSIDE = {"viewZ": SURFACES["viewZ"].background}
+_OUTSIDE = {"viewZ": BACKGROUND_Z}
 
 _SHRINK = Pass(
     "shrink",

@@ -108,6 +108,7 @@ def _job(
     camera: tuple[str | None, str | None, float | None],
 ) -> "Job":
     """The job that the options describe; those that are not given leave what the picture or the scene says."""
+    from ..modules import MODULES
     from .job import Job
 
     job = Job.like(like) if like else Job()
@@ -117,9 +118,10 @@ def _job(
         raise ParameterError("which scene? Name one (`aolab scenes` lists them), a model file, or --like FILE.png")
     if module is not None and module != job.module:
         job.module, job.parameters = module, {}
-    job.parameters |= dict(_key_value(text) for text in set_ or [])
+    changes = dict(_key_value(text) for text in set_ or [])
     if occluders is not None:
-        job.parameters["occluders"] = occluders
+        changes["occluders"] = occluders
+    job.parameters = MODULES[job.module].changed(job.parameters, changes) if job.module in MODULES else changes
     job.place_camera(*camera)
     return job
 
@@ -163,7 +165,7 @@ def modules(name: Annotated[str | None, typer.Argument(help="One module only.")]
     """List the modules and their parameters: name, type, default, range, unit, and what it does."""
     from ..errors import suggestion
     from ..modules import MODULES
-    from ..modules.parameters import describe
+    from ..modules.parameters import Choice, describe
 
     if name is not None and name not in MODULES:
         raise ParameterError(f"no module '{name}'{suggestion(name, MODULES)}")
@@ -174,9 +176,17 @@ def modules(name: Annotated[str | None, typer.Argument(help="One module only.")]
     for key, module in chosen.items():
         print(f"{key}: {module.title}\n  {module.paper}")
         for field in module.model_fields:
-            about = describe(module, field)
-            facts = ", ".join(filter(None, (about["type"], about["range"], about["unit"])))
-            print(f"  {field} = {about['default']}  ({facts})\n      {about['description']}")
+            _print_parameter(describe(module, field))
+    choices = {of.label(): of for of in chosen[next(iter(chosen))].stated().values() if issubclass(of, Choice)}
+    for name, choice in choices.items():
+        print(f"{name}:")
+        for field in choice.model_fields:
+            _print_parameter(describe(choice, field))
+
+
+def _print_parameter(about: dict[str, str]) -> None:
+    facts = ", ".join(filter(None, (about["type"], about["range"], about["unit"])))
+    print(f"  {about['name']} = {about['default']}  ({facts})\n      {about['description']}")
 
 
 @app.command()

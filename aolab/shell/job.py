@@ -147,7 +147,7 @@ def typed(name: str, parameters: dict[str, Any]) -> Module:
     module = type(find(name, MODULES))
     values = {}
     for key, value in parameters.items():
-        if key in module.model_fields and isinstance(value, str):
+        if key in module.stated() and isinstance(value, str):
             # the JSON reading of a word, where it has one: 16, 0.5, true; pydantic checks it after that
             with suppress(json.JSONDecodeError):
                 value = json.loads(value)

@@ -127,7 +127,7 @@ def label(module: Module, scene: Scene) -> str:
     """Name and parameters that are not the defaults."""
     defaults = type(module)().resolved(scene).model_dump()
     changed = [f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}"
-               for key, value in module.model_dump().items() if value != defaults[key]]  # fmt: skip
+               for key, value in module.model_dump().items() if value != defaults.get(key)]  # fmt: skip
     return " ".join([module.name or type(module).__name__, *changed])
 
 

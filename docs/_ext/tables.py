@@ -9,7 +9,7 @@ from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
 from aolab.loading import describe_scene, scene_names
-from aolab.modules import MODULES, Module
+from aolab.modules import MODULES, Module, known_buffers
 from aolab.modules.parameters import describe
 from aolab.shell.cli import app as shell
 
@@ -56,13 +56,30 @@ class ParameterTable(Markdown):
     def text(self) -> str:
         keys = ("name", "type", "default", "range", "unit", "description")
         rows = []
-        for about in (describe(self.module, name) for name in self.module.model_fields):
+        for about in (describe(self.module, name) for name in self.module.stated()):
+            if about["with"]:
+                about["description"] += f" With `{about['with']}`."
             about |= {key: f"`{about[key]}`" for key in ("name", "default")}
             about["range"] = (
                 about["range"].replace(" ", "\u00a0").replace(",\u00a0", ", ")
             )  # no line break between a sign and its number
             rows.append([about[key] for key in keys])
         return _table([key.capitalize() for key in keys], rows)
+
+
+class BufferTable(Markdown):
+    """The table of buffers."""
+
+    def text(self) -> str:
+        rows = [
+            [f"`{row.name}`", str(row.channels), row.format, row.unit, _background(row.background), row.kind, row.about]
+            for row in known_buffers().values()
+        ]
+        return _table(["Name", "Channels", "Format", "Unit", "Background", "Kind", "Meaning"], rows)
+
+
+def _background(value: float | None) -> str:
+    return "environment" if value is None else f"{value:g}"
 
 
 class ModuleTable(Markdown):
@@ -110,6 +127,7 @@ def setup(app: Sphinx) -> dict[str, bool]:
     app.add_directive("module-facts", ModuleFacts)
     app.add_directive("parameters", ParameterTable)
     app.add_directive("modules", ModuleTable)
+    app.add_directive("buffers", BufferTable)
     app.add_directive("scenes", SceneTable)
     app.add_directive("shell-help", ShellHelp)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -10,7 +10,7 @@ import small_scenes
 
 from aolab import DirectionalLight, Environment, Frame, Module, ParameterError, Pass, PointLight, Scene, paths
 from aolab.gl.texture import FORMATS
-from aolab.modules import MODULES
+from aolab.modules import MODULES, known_buffers
 from aolab.modules.filters import FILTERS
 from aolab.modules.occluders import OCCLUDERS
 from aolab.modules.parameters import Parameters, describe
@@ -246,3 +246,23 @@ def test_a_module_cannot_be_changed_in_place(name):
     changed = module.replace(filter="bilateral")
     assert changed.filter == "bilateral"
     assert module.filter == "box4"
+
+
+@pytest.mark.parametrize("name", MODULES)
+def test_every_buffer_is_in_the_table(lab, boxes, name):
+    """All buffers of all settings: their channels and formats are those of the table."""
+    table = known_buffers()
+    for context in contexts(MODULES[name], ""):
+        frame = lab.render(boxes, name, size=(8, 6), **context)
+        for buffer in frame.buffers:
+            about = table[buffer.removesuffix("_raw")]
+            assert about.about.endswith(".")
+            values = frame[buffer]
+            assert (values.shape[2] if values.ndim == 3 else 1) == about.channels, buffer
+            if about.format and buffer in frame.textures:
+                assert frame.channels(buffer).ndim == (2 if FORMATS[about.format][0] == 1 else 3), buffer
+
+
+def test_a_row_of_the_table_has_room_for_its_channels():
+    for row in known_buffers().values():
+        assert not row.format or FORMATS[row.format][0] >= row.channels, row.name

@@ -98,6 +98,15 @@ def test_like_takes_other_options_on_top(aolab):
     assert "radius" not in read_png("c.png")["parameters"]
 
 
+def test_like_with_another_occluder_kind_drops_the_parameters_of_the_old_kind(aolab):
+    aolab("render", "boxes", *SMALL, "--occluders", "views", "--set", "views=2", "-o", "a.png")
+    done = aolab("render", "--like", "a.png", "--occluders", "layers", "-o", "b.png")
+    assert done.code == 0, done.err
+    parameters = read_png("b.png")["parameters"]
+    assert parameters["layers"] == 4
+    assert "views" not in parameters
+
+
 def test_stats_and_buffers_are_written_as_the_design_says(aolab):
     done = aolab("render", "boxes", *SMALL, "-o", "a.png", "--stats", "a.json", "--buffers", "a.npz", "--seed", "2")
     assert done.code == 0, done.err

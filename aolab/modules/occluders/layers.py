@@ -4,7 +4,7 @@ import moderngl
 
 from ...gl.bindings import Bindings
 from ...scene.view import View
-from ..buffers import SURFACES
+from ..buffers import BACKGROUND_Z, SURFACES
 from ..parameters import parameter
 from ..passes import Pass
 from .base import Drawing, Hidden, OccluderKind, Occluders, Textures
@@ -46,6 +46,6 @@ def packed(drawing: Drawing, nearest: moderngl.Texture, behind: list[Textures]) 
         "pipeline/pack_layers.frag",
         {"layersZ": "RGBA32F"},
         {"count": len(depths)},
-        outside={"layersZ": SURFACES["viewZ"].background},
+        outside={"layersZ": BACKGROUND_Z},
     )
     return drawing.run(step, [inputs], nearest.size)

@@ -17,7 +17,7 @@ DISPLACEMENTS = ((1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.6, 
 
 
 class Views(OccluderKind):
-    """The surfaces of `views` further cameras, at `view_scale` of the resolution, with `view_layers` peeled layers each.
+    """The surfaces of `views` further cameras, at `view_scale` of the resolution, each with `view_layers` layers.
 
     The pictures of all views are tiles of one atlas for each quantity, two in a row.
     """
