@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 import moderngl
 
@@ -37,28 +36,35 @@ class Joined:
 
 def joined(bindings: Iterable[Bindings], place: str) -> Joined:
     """The bindings of all owners as one. Raises `ParameterError` where two owners give one name; `place` is named."""
-    owners: dict[tuple[str, str], str] = {}
+    bindings = list(bindings)
     result = Joined({}, {}, {}, {})
     for one in bindings:
-        _add(owners, one.owner, "texture", one.textures, result.textures, place)
-        _add(owners, one.owner, "value", one.uniforms, result.uniforms, place)
-        _add(owners, one.owner, "value", one.constants, result.constants, place)
-        _add(owners, one.owner, "include", one.includes, result.includes, place)
+        values = result.uniforms.keys() | result.constants.keys()
+        if not (
+            values.isdisjoint(one.uniforms)
+            and values.isdisjoint(one.constants)
+            and result.textures.keys().isdisjoint(one.textures)
+            and result.includes.keys().isdisjoint(one.includes)
+        ):
+            raise ParameterError(f"{place}: {_given_twice(bindings)}; rename one of the two")
+        result.uniforms.update(one.uniforms)
+        result.constants.update(one.constants)
+        result.textures.update(one.textures)
+        result.includes.update(one.includes)
     return result
 
 
-def _add(
-    owners: dict[tuple[str, str], str],
-    owner: str,
-    kind: str,
-    given: Mapping[str, Any],
-    into: dict[str, Any],
-    place: str,
-) -> None:
-    for name, value in given.items():
-        first = owners.setdefault((kind, name), owner)
-        if first != owner:
-            raise ParameterError(
-                f"{place}: the {kind} '{name}' is given twice, by {first} and by {owner}; rename one of them"
-            )
-        into[name] = value
+def _given_twice(bindings: list[Bindings]) -> str:
+    """The first name that two owners give, and both owners."""
+    for kind, names_of in {
+        "value": lambda one: {**one.uniforms, **one.constants},
+        "texture": lambda one: one.textures,
+        "include": lambda one: one.includes,
+    }.items():
+        owners: dict[str, str] = {}
+        for one in bindings:
+            for name in names_of(one):
+                if name in owners:
+                    return f"the {kind} '{name}' is given twice, by {owners[name]} and by {one.owner}"
+                owners[name] = one.owner
+    raise AssertionError("no name is given twice")

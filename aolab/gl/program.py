@@ -30,12 +30,14 @@ class Program:
     locations: dict[str, int]
     uniforms: dict[str, moderngl.Uniform] = field(init=False)
     samplers: list[str] = field(init=False)
+    _values: dict[str, moderngl.Uniform] = field(init=False)
     fullscreen: moderngl.VertexArray | None = None
 
     def __post_init__(self) -> None:
         members = {name: self.gl[name] for name in self.gl}
         self.uniforms = {name: member for name, member in members.items() if isinstance(member, moderngl.Uniform)}
         self.samplers = [name for name, uniform in self.uniforms.items() if _is_sampler(uniform)]
+        self._values = {name: uniform for name, uniform in self.uniforms.items() if not _is_sampler(uniform)}
         count = sum(self.uniforms[name].array_length for name in self.samplers)
         if count > MAX_SAMPLERS:
             raise ShaderError(
@@ -44,9 +46,7 @@ class Program:
 
     def set(self, values: Mapping[str, object]) -> None:
         """Set every uniform that is not a sampler from `values`. Raises `ShaderError` for a uniform without a value."""
-        for name, uniform in self.uniforms.items():
-            if _is_sampler(uniform):
-                continue
+        for name, uniform in self._values.items():
             if name not in values:
                 raise ShaderError(f"{self.name}: uniform '{name}' is given by nothing{suggestion(name, values)}")
             value = values[name]

@@ -218,7 +218,7 @@ class Module(Parameters):
 
     @classmethod
     def changed(cls, values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
-        """The values with some changed. Another choice starts with its own defaults: those of the old one are dropped."""
+        """The values with some changed. Another choice drops the parameters of the choice before it."""
         stated = cls.stated()
         dropped = {
             name

@@ -16,8 +16,8 @@ OWNERS: dict[str, tuple[str, ...]] = {
         "clip_from_world", "small_ray_from_pixel",
     ),
     "the lights": (
-        "lights", "light_slots", "shadow_slots", "light_kind", "light_tile", "light_position", "light_direction",
-        "light_color", "light_spot_cos", "shadow_from_world", "shadow_tile",
+        "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
+        "light_spot_cos",
     ),
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel",),

@@ -14,7 +14,7 @@ from ..modules.passes import AMBIENT, DIRECT, Pass, reflect
 from ..scene.environment import Environment
 from ..scene.lights import DirectionalLight, PointLight, SpotLight
 from ..scene.scene import Scene
-from ..scene.view import View, matrix_bytes
+from ..scene.view import View
 from .estimate import estimate, steps
 from .pass_runner import Buffers, PassRunner
 from .shadows import ShadowMaps
@@ -78,11 +78,9 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
         "light_direction": direction.tobytes(),
         "light_color": color.tobytes(),
         "light_spot_cos": spot_cos.tobytes(),
-        "shadow_from_world": b"".join(matrix_bytes(matrix) for matrix in shadows.matrices),
-        "shadow_tile": shadows.tiles.astype(np.float32).tobytes(),
     }
-    constants = {"lights": count, "light_slots": slots, "shadow_slots": len(shadows.matrices)}
-    return Bindings("the lights", {"shadow_atlas": shadows.atlas}, uniforms, constants)
+    textures = {"shadow_atlas": shadows.atlas, "shadow_table": shadows.table}
+    return Bindings("the lights", textures, uniforms, {"lights": count, "light_slots": slots})
 
 
 def light(state: SurfaceState, lights: Lights) -> Buffers:

@@ -88,30 +88,28 @@ class Rasterizer:
         bindings: Iterable[Bindings] = (),
         depth: Depth | None = None,
     ) -> Buffers:
-        """Draw the triangles from each viewpoint into its region of the outputs; `depth` in place of a scratch one."""
+        """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one."""
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
         mesh = Bindings("the mesh", uniforms={"base_color": (1.0, 1.0, 1.0, 1.0), "alpha_cutoff": 0.0})
         own = [*bindings, mesh, Bindings(f"the pass '{step.name}'", constants=step.constants)]
-        place = f"pass '{step.name}'"
+        views = [Bindings("the view", uniforms=viewpoint.uniforms) for viewpoint in viewpoints]
+        given = [joined([*own, view], f"pass '{step.name}'") for view in views]
+        program = runner.program(step, given[0], step.vertex)
         tested = step.combine == "nearest"
+        depth = (depth or self.depth.of(size)) if tested else None
         targets = runner.targets(step, size)
+        # a depth texture alone is not kept in the pool, which would keep it for good
+        framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
+        runner.bind(program, given[0].textures, step.reads, {"base_texture": 0})
         with runner.timer.measure(step.name):
-            program = framebuffer = None
-            for viewpoint in viewpoints:
-                given = joined([*own, Bindings("the view", uniforms=viewpoint.uniforms)], place)
-                if program is None or framebuffer is None:
-                    program = runner.program(step, given, step.vertex)
-                    depth = (depth or self.depth.of(size)) if tested else None
-                    # a depth texture alone is not kept in the pool, which would keep it for good
-                    framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
-                    _clear(runner, framebuffer, step, targets, size)
-                    runner.bind(program, given.textures, step.reads, {"base_texture": 0})
-                program.set(given.uniforms)
-                framebuffer.viewport = viewpoint.region
-                framebuffer.use()
-                gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
-                with nullcontext() if tested else raw.or_bits():
+            _clear(runner, framebuffer, step, targets, size)
+            gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
+            with nullcontext() if tested else raw.or_bits():
+                for viewpoint, one in zip(viewpoints, given, strict=True):
+                    program.set(one.uniforms)
+                    framebuffer.viewport = viewpoint.region
+                    framebuffer.use()
                     self.geometry.draw(self.scene, program)
             gl.enable_only(moderngl.NOTHING)
         return targets

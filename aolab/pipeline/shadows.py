@@ -8,7 +8,7 @@ import numpy as np
 
 from ..errors import SceneError
 from ..gl import context
-from ..gl.texture import refuse_exhaustion
+from ..gl.texture import make, refuse_exhaustion
 from ..maths.transforms import look_along, orthographic, perspective
 from ..modules.passes import GeometryPass
 from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
@@ -18,8 +18,9 @@ from .rasterizer import Rasterizer
 
 _SHADOWS = GeometryPass("shadows", "pipeline/shadow.frag", {}, vertex="pipeline/shadow.vert")
 
-FINE, COARSE = 2048, 1024  # pixels a side of a light's map: fine for up to four of them. SSDO (2009) used 512
-MAX_TILES = 32  # mat4 uniforms: OpenGL 3.3 grants 1024 floats, and these take 512
+# pixels a side of a tile, by the number of tiles that it is for. SSDO (2009) used 512
+TILE_SIZES = {4: 2048, 36: 1024, 256: 512}
+MAX_TILES = 256  # an atlas of 8192 pixels a side, 256 MB
 SLOPE_BIAS, CONSTANT_BIAS = 3.0, 4.0  # glPolygonOffset: the filter reaches 1.25 texels in x and in y
 
 # right-handed looks of a point light's six faces, in the order of `cubeFace` in glsl/lib/light.glsl
@@ -35,12 +36,14 @@ _CUBE = (
 
 @dataclass(frozen=True)
 class ShadowMaps:
-    """`atlas` is a depth texture; tile i covers `tiles[i]` (corner x, y and size, in uv), seen by `matrices[i]`."""
+    """The shadow maps of all lights: tiles of `atlas`, a depth texture.
+
+    `table` has a row for each tile: the four columns of its clip_from_world, then its corner x, y and its size, in uv.
+    """
 
     atlas: moderngl.Texture
-    matrices: np.ndarray  # (tiles, 4, 4) clip_from_world
-    tiles: np.ndarray  # (tiles, 3)
-    first_tile: tuple[int, ...]  # a light; -1 casts no shadow
+    table: moderngl.Texture
+    first_tile: tuple[int, ...]  # of each light; -1 for a light without shadow
 
 
 def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.ndarray]]:
@@ -59,7 +62,7 @@ def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.n
 
 
 def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
-    """Draw the shadow maps of all lights. Raises `SceneError` for more tiles than a shader can hold."""
+    """Draw the shadow maps of all lights. Raises `SceneError` for more tiles than an atlas has room for."""
     gl, scene = context.get(), rasterizer.scene
     projections: list[tuple[np.ndarray, np.ndarray]] = []
     first_tile = []
@@ -74,7 +77,7 @@ def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
             f"{count} shadow tiles; the limit is {MAX_TILES}. Set shadow=False on the lesser lights"
         )
     side = max(1, ceil(sqrt(count)))
-    tile = (FINE if count <= 4 else COARSE) if count else 1
+    tile = next(size for most, size in TILE_SIZES.items() if count <= most) if count else 1
     width = side * tile
     atlas = gl.depth_texture((width, width))
     refuse_exhaustion(f"shadow maps of {width}x{width}")
@@ -89,6 +92,8 @@ def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
         gl.polygon_offset = SLOPE_BIAS, CONSTANT_BIAS
         rasterizer.triangles(_SHADOWS, views, depth=atlas)
         gl.polygon_offset = 0.0, 0.0
-    matrices = [clip @ view for view, clip in projections] or [np.eye(4)]
-    tiles = np.array([(i % side / side, i // side / side, 1 / side) for i in range(max(1, count))])
-    return ShadowMaps(atlas, np.array(matrices), tiles, tuple(first_tile))
+    table = np.zeros((max(1, count), 5, 4), np.float32)  # GL has no empty texture
+    for row, (view, clip) in enumerate(projections):
+        table[row, :4] = (clip @ view).T
+        table[row, 4, :3] = row % side / side, row // side / side, 1 / side
+    return ShadowMaps(atlas, make((5, len(table)), "RGBA32F", table.tobytes()), tuple(first_tile))

@@ -1,6 +1,7 @@
 """The camera: a pinhole, right-handed, y up; view space looks down -z."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -44,10 +45,12 @@ class Camera:
         if self.far is not None and not (self.near or 0) < self.far < np.inf:
             raise SceneError(f"camera: far = {self.far} must be finite and above near = {self.near or 0}")
 
-    @property
+    @cached_property
     def view_from_world(self) -> np.ndarray:
-        """(4, 4) float64, a rigid transform."""
-        return look_along(np.asarray(self.eye), np.subtract(self.target, self.eye), np.asarray(self.up))
+        """(4, 4) float64, a rigid transform; read-only."""
+        matrix = look_along(np.asarray(self.eye), np.subtract(self.target, self.eye), np.asarray(self.up))
+        matrix.flags.writeable = False
+        return matrix
 
     def tan_half_fov(self, size: tuple[int, int]) -> tuple[float, float]:
         """Tangents of half the horizontal and vertical field of view for an image of (width, height) pixels."""

@@ -4,7 +4,6 @@
 
 const int lights;
 const int light_slots;   // max(lights, 1): GLSL has no empty arrays
-const int shadow_slots;
 
 uniform sampler2DShadow shadow_atlas;
 uniform int light_kind[light_slots];
@@ -13,8 +12,7 @@ uniform vec3 light_direction[light_slots];
 uniform vec3 light_color[light_slots];
 uniform vec2 light_spot_cos[light_slots];
 uniform int light_tile[light_slots];            // the light's first shadow tile, or -1 without shadow
-uniform mat4 shadow_from_world[shadow_slots];
-uniform vec3 shadow_tile[shadow_slots];
+uniform sampler2D shadow_table;   // a row a tile: the four columns of its clip_from_world; its corner and size in the atlas
 
 // The unit direction towards light `i`, world space. `arriving` is the factor from light_color[i] to irradiance,
 // without shadows.
@@ -27,7 +25,9 @@ float shadowOf(int i, vec3 worldPos, vec3 toLight) {
     int tile = light_tile[i];
     if (tile < 0) return 1.0;
     if (light_kind[i] == POINT) tile += cubeFace(-toLight);
-    return shadowAt(shadow_atlas, shadow_from_world[tile], shadow_tile[tile], worldPos);
+    mat4 shadowFromWorld = mat4(texelFetch(shadow_table, ivec2(0, tile), 0), texelFetch(shadow_table, ivec2(1, tile), 0),
+                                texelFetch(shadow_table, ivec2(2, tile), 0), texelFetch(shadow_table, ivec2(3, tile), 0));
+    return shadowAt(shadow_atlas, shadowFromWorld, texelFetch(shadow_table, ivec2(4, tile), 0).xyz, worldPos);
 }
 
 // The unshadowed share of a light that is a lobe of spherical harmonics; `facing` = dot(normal, toLight). A lobe also

@@ -238,13 +238,24 @@ def test_holes_of_a_cut_out_texture_let_light_through(lab):
 
 
 def test_too_many_shadow_tiles_are_refused_with_the_way_out(lab):
-    lights = tuple(PointLight((x, 2, 0)) for x in range(6))
-    with pytest.raises(
-        aolab.SceneError, match=r"6 lights \(6 of them points.*36 shadow tiles.*limit is 32.*shadow=False"
-    ):
+    lights = tuple(PointLight((x, 2, 0)) for x in range(43))
+    message = r"43 lights \(43 of them points.*258 shadow tiles.*limit is 256.*shadow=False"
+    with pytest.raises(aolab.SceneError, match=message):
         lab.render(floor_under(*lights), "none")
-    enough = (*lights[:5], PointLight((5, 2, 0), shadow=False))
-    assert lab.render(floor_under(*enough), "none")["direct"].any()
+
+
+def test_more_lights_than_a_uniform_array_has_matrices_for_cast_their_own_shadows(lab):
+    """70 lamps, 70 tiles: the shadow of the post from each lamp lies where it lies without the other lamps."""
+    post = small_scenes.box((-0.3, 0, -0.3), (0.3, 1.2, 0.3))
+    angles = np.linspace(0, 2 * np.pi, 70, endpoint=False)
+    lamps = [SpotLight((2 * np.cos(a), 3, 2 * np.sin(a)), (-np.cos(a), -1.5, -np.sin(a)), (5, 5, 5)) for a in angles]
+    together = lab.render(floor_under(*lamps, more=[post]), "none")["direct"]
+    few = [lab.render(floor_under(*lamps[i::5], more=[post]), "none")["direct"] for i in range(5)]
+    difference = np.abs(together - sum(few))
+    assert np.quantile(difference, 0.95) < 0.01 * together.max()  # 512 pixels a tile, against 1024: at shadows' edges
+    assert difference.mean() < 0.002 * together.mean()
+    without = lab.render(floor_under(*lamps), "none")["direct"]
+    assert (together < 0.9 * without).mean() > 0.02
 
 
 def test_a_scene_without_light_gets_a_sun_and_a_sky(lab):

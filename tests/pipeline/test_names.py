@@ -1,5 +1,7 @@
 """The names that the pipeline reserves are the names that it gives: no more, and no fewer."""
 
+import pytest
+
 from aolab import DirectionalLight, PointLight
 from aolab.modules.names import OWNERS, reserved
 from aolab.modules.occluders import OCCLUDERS
@@ -23,6 +25,7 @@ def given(lab, scene, monkeypatch, module: str, **settings) -> dict[str, set[str
     return found
 
 
+@pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")
 def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
     scene = boxes.replace(lights=(DirectionalLight((0.3, -1, 0.2)), PointLight((0, 3, 1))))
     found: dict[str, set[str]] = {}
