@@ -1,10 +1,11 @@
-"""What the tests share: the GL context, a lab, small scenes with known answers, real models."""
+"""The tests' shared parts: the order of files, the GL context, a lab, small scenes with known answers, real models."""
 
 import os
 import shutil
 import subprocess
 import sys
 import textwrap
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -25,6 +26,18 @@ from aolab.pipeline.pass_runner import PassRunner
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
 
 CHECKOUT = Path(__file__).parents[1]
+PAPERS = CHECKOUT / "tests" / "papers"
+os.environ.setdefault("LP_NUM_THREADS", "1")  # of llvmpipe: the tests' processes use the cores already
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the papers' figures; put the files with the most slow tests first, so that no worker ends long after others."""
+    for item in items:
+        if PAPERS in item.path.parents and item.path.stem != "test_reproduce":
+            item.add_marker("figures")
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: -slow[item.path])
 
 
 @pytest.fixture(autouse=True)

@@ -6,7 +6,7 @@ from small_scenes import floor, of, quad, sphere
 
 import aolab
 
-CONVERGED = {"steps": 32, "directions": 16, "accumulate": 32, "filter": "none", "thickness": 10.0, "bias": 0.0}
+CONVERGED = {"steps": 32, "directions": 16, "accumulate": 8, "filter": "none", "thickness": 10.0, "bias": 0.0}
 
 
 def seen_whole(scene: aolab.Scene, radius: float, size: tuple[int, int], lab: aolab.Lab):
@@ -28,14 +28,14 @@ def test_a_corner_open_to_the_camera_agrees_with_rays(lab, angle):
     wall = quad((0, 0, 50), (0, 0, -100), (-50 * np.cos(tilt), 50 * np.sin(tilt), 0), name="wall")
     camera = aolab.Camera(eye=(3, 5, 0.01), target=(0, 0, 0), fov=40)
     scene = of(quad((0, 0, 50), (50, 0, 0), (0, 0, -100), name="floor"), wall, camera=camera)
-    frame, truth, known, pixels = seen_whole(scene, 1.0, (192, 144), lab)
+    frame, truth, known, pixels = seen_whole(scene, 1.0, (128, 96), lab)
     error = (frame["visibility"] - truth["visibility"])[known]
     occluded = (truth["visibility"] < 0.99)[known]
     assert occluded.mean() > 0.05
     # beside the noise of the rays, the point is lifted by a pixel, which moves the corner by as much of a radius
     deviation = np.hypot(truth["standard_error"][known], 0.5 / pixels)
     score = error / deviation
-    assert abs(score[occluded].mean()) < 1.0
+    assert abs(score[occluded].mean()) < 0.7
     assert np.mean(np.abs(score) < 3) > 0.97
 
 
