@@ -24,20 +24,31 @@ from aolab.modules.passes import Pass
 from aolab.pipeline.pass_runner import PassRunner
 
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
+os.environ.setdefault("LP_NUM_THREADS", "1")  # threads of llvmpipe in each worker: the workers use the cores already
 
 CHECKOUT = Path(__file__).parents[1]
 PAPERS = CHECKOUT / "tests" / "papers"
-os.environ.setdefault("LP_NUM_THREADS", "1")  # of llvmpipe: the tests' processes use the cores already
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the papers' figures; put the files with the most slow tests first, so that no worker ends long after others."""
+    """Mark figures and slow tests by their place and fixtures; files with many slow tests run first."""
     for item in items:
         if PAPERS in item.path.parents and item.path.stem != "test_reproduce":
             item.add_marker("figures")
+        if {"python", "mitsuba"} & {*getattr(item, "fixturenames", ())}:  # fixtures that start a process
+            item.add_marker("slow")
+    # the last file to start is then a short one, and the workers end together
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
+
+
+@pytest.fixture(scope="session", autouse=True)
+def session_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A cache for fixtures that several tests share; each test itself has its own, `cache_folder`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AOLAB_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 @pytest.fixture(autouse=True)

@@ -7,7 +7,7 @@ from small_scenes import box, floor, of
 import aolab
 
 # the floor is one quad, open on purpose, and peeling says so
-pytestmark = pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")]
 
 SIZE = (72, 48)
 SMALL = {"size": SIZE, "rays": 64, "frames": 16, "radius": 1.0, "directions": 8}

@@ -44,6 +44,7 @@ def test_no_bent_normal_is_longer_than_1(lab, boxes):
         assert np.linalg.norm(frame["bent_normal"], axis=-1).max() < 1.001
 
 
+@pytest.mark.slow
 def test_bent_normals_are_the_references(lab):
     module = aolab.SSBN(directions=16, steps=16, filter="none", occluders="layers")
     truth = aolab.reference("boxes", size=(160, 90), like=module, rays=128, buffers=("bent_normal",), cache=False)

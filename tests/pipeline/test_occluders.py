@@ -227,6 +227,7 @@ def hidden_back() -> aolab.Scene:
     return of(ground, screen, camera=Camera((0, 4, 2.5), (0, 0, -0.4)), lights=(lamp,), sky=DARK)
 
 
+@pytest.mark.slow
 def test_hidden_senders_bounce(lab):
     """The red back of the screen, which the camera does not see, shines onto the floor behind it."""
     scene, size = hidden_back(), (128, 96)
@@ -364,6 +365,7 @@ def test_each_setting_of_the_views_has_an_effect(lab):
         assert not np.array_equal(plain, other, equal_nan=True), change
 
 
+@pytest.mark.slow
 def test_more_views_and_finer_ones_come_closer_to_rays(lab):
     scene, _ = hidden_blocker()
     truth = traced(scene, 0.8, (128, 96))

@@ -40,6 +40,7 @@ def test_pareto_front_is_what_no_other_point_dominates():
     assert pareto_front(costs) == undominated
 
 
+@pytest.mark.slow
 def test_front_of_the_curve_falls(measured: Curve):
     front = measured.front
     assert front
@@ -71,6 +72,7 @@ def test_settings_keep_to_the_parameters_ranges_and_repeat_none():
     assert len(grid) == len(set(map(str, grid))) == 2 * 2 * 3
 
 
+@pytest.mark.slow
 def test_module_without_parameters_of_its_own_is_one_point(measured: Curve):
     assert settings(aolab.Unoccluded()) == [(aolab.Unoccluded(), {})]
     assert [point.label for point in measured.points if point.module == "none"] == ["none"]
@@ -87,6 +89,7 @@ def test_own_module_is_measured_over_what_it_has(boxes: aolab.Scene):
     assert {point.module for point in points} == {"Few"}
 
 
+@pytest.mark.slow
 def test_time_is_that_of_the_passes_that_the_module_adds(measured: Curve):
     by_label = {point.label: point for point in measured.points}
     assert set(by_label["ssao 8×4 none"].passes) == {"ssao"}
@@ -100,6 +103,7 @@ def test_time_is_that_of_the_passes_that_the_module_adds(measured: Curve):
     assert alone.milliseconds == pytest.approx(alone.passes["ssao"])
 
 
+@pytest.mark.slow
 def test_error_is_that_against_the_truth_of_the_same_radius_and_falloff(measured: Curve, boxes: aolab.Scene):
     module = aolab.SSAO(radius=1.0)
     truth = reference(boxes, size=SIZE, rays=8, like=module, buffers=("visibility",))
@@ -120,6 +124,7 @@ def short_grid(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("aolab.studies.quality.FACTORS", {"directions": (0.5, 1)})
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("short_grid")
 def test_all_modules_have_the_radius_of_the_curve(boxes: aolab.Scene):
     reach = [curve(boxes, [aolab.SSAO(radius=9.0)], radius=radius, **FEW).points for radius in (0.1, 1.0)]
@@ -155,6 +160,7 @@ def test_visibility_error_of_equal_frames_is_zero(boxes: aolab.Scene):
     assert visibility_error(truth, truth)["maximum"] == 0
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("short_grid")
 def test_command_writes_picture_and_data_beside_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     small = "x".join(map(str, SIZE))

@@ -21,6 +21,7 @@ def seen_whole(scene: aolab.Scene, radius: float, size: tuple[int, int], lab: ao
     return frame, truth, known, reach[known]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [90.0, 120.0, 150.0])
 def test_a_corner_open_to_the_camera_agrees_with_rays(lab, angle):
     """Two planes that meet at an angle hide nothing from a camera above them: only sampling errors remain."""
@@ -39,6 +40,7 @@ def test_a_corner_open_to_the_camera_agrees_with_rays(lab, angle):
     assert np.mean(np.abs(score) < 3) > 0.97
 
 
+@pytest.mark.slow
 def test_a_ball_on_a_floor_agrees_with_rays_where_it_is_seen(lab):
     """From above, the upper half of a ball that is sunk in the floor hides nothing."""
     camera = aolab.Camera(eye=(0, 8, 0.01), target=(0, 0, 0), fov=35)
@@ -49,6 +51,7 @@ def test_a_ball_on_a_floor_agrees_with_rays_where_it_is_seen(lab):
     assert abs(error.mean()) < 0.005
 
 
+@pytest.mark.slow
 def test_a_scan_on_a_floor_is_within_two_hundredths(lab, models):
     """16 directions × 4 steps at 960×540, the radius a fifth of the bunny's height: RMSE below 0.02."""
     loaded = aolab.load(models / "bunny.ply").instances[0].mesh

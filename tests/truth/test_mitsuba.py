@@ -27,9 +27,7 @@ def mitsuba() -> None:
         pytest.skip("needs Mitsuba: pip install mitsuba, and libatomic")
 
 
-def needs_mitsuba(test):
-    """Each call of Mitsuba is a process of its own, so that these tests are slow ones."""
-    return pytest.mark.slow(pytest.mark.usefixtures("mitsuba")(test))
+needs_mitsuba = pytest.mark.usefixtures("mitsuba")
 
 
 def fine(buffer):
