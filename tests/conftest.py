@@ -32,15 +32,15 @@ PAPERS = CHECKOUT / "tests" / "papers"
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark figures and slow tests by their place and fixtures; files with many slow tests run first."""
+    """Mark figures and slow tests by their place and fixtures; the wheel and files with many slow tests run first."""
     for item in items:
         if PAPERS in item.path.parents and item.path.stem != "test_reproduce":
             item.add_marker("figures")
         if {"python", "mitsuba"} & {*getattr(item, "fixturenames", ())}:  # fixtures that start a process
             item.add_marker("slow")
-    # the last file to start is then a short one, and the workers end together
+    # the last file to start is then a short one, and the workers end together; the wheel waits for the package index
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
-    items.sort(key=lambda item: -slow[item.path])
+    items.sort(key=lambda item: (item.get_closest_marker("wheel") is None, -slow[item.path]))
 
 
 @pytest.fixture(scope="session", autouse=True)
