@@ -5,15 +5,28 @@ RUNTIME := .venv/runtime.stamp
 DEV := .venv/dev.stamp
 DOCS := .venv/docs.stamp
 
+# the tests' processes; files with slow tests come first (tests/conftest.py), and the tests of a file stay together
+WORKERS ?= $(shell n=$$(getconf _NPROCESSORS_ONLN); echo $$((n < 8 ? n : 8)))
+PYTEST = $(RUN) -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
+# what OpenGL can change, as on macOS and with old drivers
+GL33 := MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330
+GL33_TESTS := tests/gl tests/modules tests/pipeline
+# what the papers' figures are made of, as one hash; `aolab/shell` is above `aolab/papers`, which cannot import it
+FIGURES := aolab glsl scenes tests/papers ':!aolab/shell' ':!*/figures.hash'
+FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
+	| git hash-object --stdin-paths | git hash-object --stdin
+
 # A stamp holds the checkout's path: the editable install names it, so a moved checkout is set up again.
 $(shell grep -qxF "$$(pwd)" $(RUNTIME) 2>/dev/null || rm -f $(RUNTIME))
 
 .NOTPARALLEL:
-.PHONY: help demo test docs bench clean distclean
+.PHONY: help demo lint types full gl33 quick test figures figures-if-changed docs bench clean distclean
 
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png'
-	@echo 'make test       set up, then check format, lint, types and tests, on the full driver and on OpenGL 3.3'
+	@echo 'make quick      format, lint, and the tests that are not slow'
+	@echo 'make test       format, lint, types, all tests, and those of OpenGL again limited to 3.3'
+	@echo 'make figures    draw the figures and tables of the papers, and test their claims'
 	@echo 'make docs       build the documentation into docs/_build/html'
 	@echo 'make bench      time every pass'
 	@echo 'make clean      remove what was built; make distclean also removes .venv'
@@ -22,12 +35,32 @@ help:
 demo: $(RUNTIME)
 	$(RUN) examples/demo.py out/demo.png
 
-test: $(DEV)
+lint: $(DEV)
 	$(RUN) -m ruff format --check
 	$(RUN) -m ruff check
+
+types: $(DEV)
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(RUN) -m pyright
-	$(RUN) -m pytest
-	MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330 $(RUN) -m pytest -m 'not wheel'
+
+full: $(DEV)
+	$(PYTEST) -m 'not figures'
+
+gl33: $(DEV)
+	$(GL33) $(PYTEST) -m 'not slow' $(GL33_TESTS)
+
+quick: lint
+	$(PYTEST) -m 'not (slow or figures or wheel or browser)'
+
+test: lint types full gl33
+
+figures: $(DEV)
+	$(PYTEST) -m figures
+	@$(FIGURES_HASH) > tests/papers/figures.hash
+	@echo 'commit tests/papers/figures.hash: it names the sources whose figures hold'
+
+# .ci/run: the figures, unless their hash is committed
+figures-if-changed: $(DEV)
+	@$(FIGURES_HASH) | cmp -s - tests/papers/figures.hash && echo 'figures: unchanged' || $(MAKE) figures
 
 docs: $(DOCS)
 	$(RUN) -m sphinx -W --keep-going -b html docs docs/_build/html

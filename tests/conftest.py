@@ -1,10 +1,11 @@
-"""What the tests share: the GL context, a lab, small scenes with known answers, real models."""
+"""The tests' shared parts: the order of files, the GL context, a lab, small scenes with known answers, real models."""
 
 import os
 import shutil
 import subprocess
 import sys
 import textwrap
+from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -23,8 +24,31 @@ from aolab.modules.passes import Pass
 from aolab.pipeline.pass_runner import PassRunner
 
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
+os.environ.setdefault("LP_NUM_THREADS", "1")  # threads of llvmpipe in each worker: the workers use the cores already
 
 CHECKOUT = Path(__file__).parents[1]
+PAPERS = CHECKOUT / "tests" / "papers"
+
+
+@pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark figures and slow tests by their place and fixtures; the wheel and files with many slow tests run first."""
+    for item in items:
+        if PAPERS in item.path.parents and item.path.stem != "test_reproduce":
+            item.add_marker("figures")
+        if {"python", "mitsuba"} & {*getattr(item, "fixturenames", ())}:  # fixtures that start a process
+            item.add_marker("slow")
+    # the last file to start is then a short one, and the workers end together; the wheel waits for the package index
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: (item.get_closest_marker("wheel") is None, -slow[item.path]))
+
+
+@pytest.fixture(scope="session", autouse=True)
+def session_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A cache for fixtures that several tests share; each test itself has its own, `cache_folder`."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("AOLAB_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield
 
 
 @pytest.fixture(autouse=True)

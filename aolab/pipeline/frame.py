@@ -94,7 +94,8 @@ class Frame:
         normal = self["viewNormal"]
         sizes = zip(normal.shape[:2], self[like].shape[:2], strict=True)
         rows, columns = ((np.arange(few) + 0.5) * (many / few) for many, few in sizes)
-        nearest = normal[rows.astype(int)[:, None], columns.astype(int)]
+        # counted from the lowest row, as in glsl/pipeline/shrink.frag: halfway, the nearest are two
+        nearest = normal[::-1][rows.astype(int)[:, None], columns.astype(int)][::-1]
         return nearest @ self.camera.view_from_world[:3, :3].astype(np.float32)
 
     @property

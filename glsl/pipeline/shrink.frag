@@ -16,7 +16,8 @@ out vec4 smallAlbedo;
 
 void main() {
     vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, small_ray_from_pixel);
-    ivec2 nearest = ivec2((ray.xy - ray_from_pixel.zw) / ray_from_pixel.xy);
+    // at half the size two pixels are nearest: rounding must not choose (`Frame.world_normal` chooses the same one)
+    ivec2 nearest = ivec2((ray.xy - ray_from_pixel.zw) / ray_from_pixel.xy + 0.01);
     nearest = clamp(nearest, ivec2(0), textureSize(viewZ, 0) - 1);
     smallViewZ = texelFetch(viewZ, nearest, 0).r;
     smallNormal = texelFetch(viewNormal, nearest, 0);

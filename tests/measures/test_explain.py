@@ -7,10 +7,10 @@ from small_scenes import box, floor, of
 import aolab
 
 # the floor is one quad, open on purpose, and peeling says so
-pytestmark = pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")
+pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")]
 
-SIZE = (96, 64)
-SMALL = {"size": SIZE, "rays": 64, "frames": 32, "radius": 1.0, "directions": 8}
+SIZE = (72, 48)
+SMALL = {"size": SIZE, "rays": 64, "frames": 16, "radius": 1.0, "directions": 8}
 
 
 @pytest.fixture(scope="module")

@@ -65,12 +65,19 @@ def test_a_light_that_is_the_same_all_around_is_refused():
         relight(towards, towards, SUN, k=0)
 
 
-def test_a_module_against_the_reference(boxes):
-    """An open, convex-ish scene: visibility times the mean irradiance errs, but less than no occlusion at all."""
-    options = {"k": 2, "environment": SUN, "size": (48, 32), "rays": 16}
-    found = relighting_error(boxes, "ssao", **options, radius=0.5, steps=8)
-    assert 0 < found.rmse < 1
-    assert all(one.pixels > 0 for one in found.measures)
+def test_a_module_errs_less_the_more_of_the_light_it_takes_into_account(boxes):
+    """Red light from one side, blue from the other. Measured: none 0.037, grey occlusion 0.020, directional 0.013."""
+    radiance = np.zeros((32, 64, 3), np.float32)
+    radiance[:, 32:, 0] = radiance[:, :32, 2] = 1
+    options = {"k": 2, "environment": aolab.Environment(radiance), "size": (48, 32), "rays": 256}
+    marched = {"radius": 1.0, "directions": 16, "steps": 8}
+    none = relighting_error(boxes, "none", like=aolab.SSAO(radius=1.0), **options)
+    grey, directional = (relighting_error(boxes, name, **marched, **options) for name in ("ssao", "ssdo"))
+    for turn in range(2):
+        errors = [found.measures[turn].rmse for found in (none, grey, directional)]
+        assert errors[0] > 1.5 * errors[1]
+        assert errors[1] > 1.3 * errors[2]
+    assert none.rmse < 0.05
 
 
 def test_the_shell_lists_modules_best_first_with_one_truth(gl, monkeypatch, capsys, tmp_path):

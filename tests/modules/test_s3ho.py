@@ -81,6 +81,7 @@ def test_moments_give_what_the_plain_form_gives(lab, boxes, settings):
         np.testing.assert_allclose(fast[f"occlusion{i}"], plain[f"occlusion{i}"], atol=1e-3)
 
 
+@pytest.mark.slow
 def test_converged_coefficients_are_the_references(lab):
     """Within 3 % of c_0 on `boxes`, where four peeled layers hold all that there is."""
     module = S3HO(directions=16, steps=16, filter="none", occluders="layers")
@@ -106,13 +107,12 @@ def test_coefficients_turn_with_the_camera(lab, wall):
     assert np.linalg.norm(found[0] - clamped_cosine(np.array([0.0, 1.0, 0.0]))) > 0.2
 
 
+@pytest.mark.slow
 def test_strength_lets_light_through_what_blocks(lab, wall):
     """Before a wall, the formula over all directions: one with d_x < 0 is blocked at x / -d_x."""
     radius, strength = 2.0, 3.0
-    module = S3HO(radius=radius, directions=64, steps=64, falloff=0.5, filter="none", thickness=10.0)
-    hard, soft = (
-        lab.render(wall, module, size=SHARP, accumulate=2, strength=value)["visibility"] for value in (0.0, strength)
-    )
+    module = S3HO(radius=radius, directions=32, steps=32, falloff=0.5, filter="none", thickness=10.0)
+    hard, soft = (lab.render(wall, module, size=SHARP, strength=value)["visibility"] for value in (0.0, strength))
     seen = lab.render(wall, "none", size=SHARP)
     across = small_scenes.world_positions(seen, wall.camera)[..., 0]
     u, v = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400)

@@ -171,3 +171,21 @@ def test_a_crease_within_the_planes_tolerance_is_still_two_surfaces(lab):
     far = small_scenes.of(left, right, camera=Camera((0, 0, 40), (0, 0, 0), fov=8))
     frame = lab.render(far, Pattern(kind=2, filter="box4"), size=(64, 64))
     np.testing.assert_allclose(frame["visibility"], frame["albedo"][..., 0], atol=1e-3)  # of half floats
+
+
+@pytest.mark.parametrize(
+    "settings", [{"filter": "box4"}, {"filter": "bilateral"}, {"filter": "none", "scale": 0.5}], ids=str
+)
+def test_surfaces_are_told_apart_by_a_step_of_a_fifth_of_a_percent_of_the_distance(lab, settings):
+    """Two parallel walls side by side, one a little farther away: PLANE_TOLERANCE in glsl/lib/filter.glsl."""
+
+    def mixed(step: float) -> float:
+        """The largest share of one wall in a pixel of the other."""
+        near = small_scenes.quad((-3, -3, 0), (3, 0, 0), (0, 6, 0), Material((1.0, 0.0, 0.0)))
+        far = small_scenes.quad((0, -3, -5 * step), (3, 0, 0), (0, 6, 0), Material((0.0, 0.0, 0.0)))
+        scene = small_scenes.of(near, far, camera=Camera((0, 0, 5), (0, 0, 0)))
+        frame = lab.render(scene, Pattern(kind=2, **settings), size=(65, 48))
+        return float(np.abs(frame["visibility"] - frame["albedo"][..., 0])[frame.mask].max())
+
+    assert mixed(0.0015) > 0.15
+    assert mixed(0.0025) < 1e-3

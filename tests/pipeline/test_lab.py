@@ -352,3 +352,25 @@ def test_normals_are_those_of_a_buffers_size(lab, boxes):
     assert frame.world_normal("sh0").shape == (48, 64, 3)
     with pytest.raises(ParameterError, match="no buffer 'shh'"):
         frame.world_normal("shh")
+
+
+class Seen(aolab.Module):
+    """The normals that an estimate reads, as its output."""
+
+    name = "seen"
+    outputs = {"seen": "RGBA32F"}  # noqa: RUF012
+    shader = """
+uniform sampler2D viewNormal;
+out vec4 seen;
+void main() { seen = texelFetch(viewNormal, ivec2(gl_FragCoord.xy), 0); }
+"""
+
+
+@pytest.mark.parametrize(
+    ("size", "scale"), [((64, 48), 1.0), ((66, 48), 1 / 3), ((64, 48), 0.5), ((960, 540), 0.5), ((65, 47), 0.3)]
+)
+def test_normals_at_a_lower_scale_are_those_that_the_estimate_read(lab, ball, size, scale):
+    """To the pixel, also at half the size, where two pixels are equally near."""
+    frame = lab.render(ball, Seen(scale=scale, filter="none"), size=size)
+    read = frame["seen_raw"][..., :3] @ frame.camera.view_from_world[:3, :3].astype(np.float32)
+    np.testing.assert_allclose(frame.world_normal("seen_raw"), read, atol=1e-6)

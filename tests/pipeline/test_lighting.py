@@ -6,6 +6,7 @@ import small_scenes
 
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, PointLight, Scene, SpotLight, Texture
+from aolab.pipeline.shadows import FINE
 from aolab.scene.lights import Light
 
 DARK = Environment.constant(0.0)
@@ -222,6 +223,29 @@ def test_shadows_follow_the_lights_and_the_geometry(lab):
             lab.render(scene, "none")["direct"], aolab.Lab((64, 48)).render(scene, "none")["direct"]
         )
     np.testing.assert_array_equal(lab.render(floor_under(sun, more=[post]), "none")["direct"], first)
+
+
+def test_a_shadows_edge_is_a_ramp_over_two_and_a_half_texels(lab):
+    """Four comparisons 1.5 texels apart, each interpolated over one (glsl/lib/light.glsl): 1.5 + 1 texels together."""
+    edge = 0.0031  # off a texel's border
+    roof = small_scenes.box((-4, 1, -4), (edge, 1.2, 4))
+    scene = floor_under(DirectionalLight((0, -1, 0)), more=[roof])
+    texel = 2 * scene.radius / FINE
+    away = 0.4 * np.sqrt(2)
+    # 8 texels across, seen from under the roof's edge
+    camera = Camera((edge + 0.4, 0.4, 0), (edge, 0, 0), up=(0, 0, -1), fov=np.degrees(8 * texel / away))
+    shadowed, open = (
+        lab.render(
+            floor_under(DirectionalLight((0, -1, 0), shadow=on), camera=camera, more=[roof]), "none", size=(96, 96)
+        )
+        for on in (True, False)
+    )
+    across = (small_scenes.world_positions(shadowed, camera)[..., 0] - edge) / texel
+    share = shadowed["direct"][..., 0] / open["direct"][..., 0]
+    assert across[share < 0.98].max() - across[share > 0.02].min() == pytest.approx(2.5, abs=0.3)
+    steps = np.diff(share[48][np.argsort(across[48])])
+    assert steps.min() > -0.01  # it only rises, without a jump: a pixel is an eighth of a texel
+    assert steps.max() < 0.15
 
 
 def test_holes_of_a_cut_out_texture_let_light_through(lab):

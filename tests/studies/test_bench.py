@@ -21,6 +21,7 @@ def test_a_summary_is_median_and_interquartile_range():
     assert bench.summary([1, 2, 3, 4, 100]) == {"median": 3, "spread": 2}
 
 
+@pytest.mark.slow
 def test_frames(gl, monkeypatch):
     monkeypatch.setattr(bench, "SMALL", SIZE)
     result = bench.frames("boxes", SIZE, 3)
@@ -41,6 +42,7 @@ def test_frames(gl, monkeypatch):
     assert "±" in text
 
 
+@pytest.mark.figures
 def test_scaling(gl):
     result = bench.scaling((40, 20), 3)
     json.dumps(result)

@@ -24,8 +24,8 @@ FEW = {"size": SIZE, "rays": 8, "frames": 2}
 
 @pytest.fixture(scope="module")
 def measured(boxes: aolab.Scene) -> Curve:
-    """Both built-in modules on a floor with boxes."""
-    return curve(boxes, radius=1.0, **FEW)
+    """Three modules on a floor with boxes."""
+    return curve(boxes, ["none", "ssao", "ssdo"], radius=1.0, **FEW)
 
 
 def test_pareto_front_of_a_case_by_hand():
@@ -40,6 +40,7 @@ def test_pareto_front_is_what_no_other_point_dominates():
     assert pareto_front(costs) == undominated
 
 
+@pytest.mark.slow
 def test_front_of_the_curve_falls(measured: Curve):
     front = measured.front
     assert front
@@ -71,6 +72,7 @@ def test_settings_keep_to_the_parameters_ranges_and_repeat_none():
     assert len(grid) == len(set(map(str, grid))) == 2 * 2 * 3
 
 
+@pytest.mark.slow
 def test_module_without_parameters_of_its_own_is_one_point(measured: Curve):
     assert settings(aolab.Unoccluded()) == [(aolab.Unoccluded(), {})]
     assert [point.label for point in measured.points if point.module == "none"] == ["none"]
@@ -87,6 +89,7 @@ def test_own_module_is_measured_over_what_it_has(boxes: aolab.Scene):
     assert {point.module for point in points} == {"Few"}
 
 
+@pytest.mark.slow
 def test_time_is_that_of_the_passes_that_the_module_adds(measured: Curve):
     by_label = {point.label: point for point in measured.points}
     assert set(by_label["ssao 8×4 none"].passes) == {"ssao"}
@@ -100,6 +103,7 @@ def test_time_is_that_of_the_passes_that_the_module_adds(measured: Curve):
     assert alone.milliseconds == pytest.approx(alone.passes["ssao"])
 
 
+@pytest.mark.slow
 def test_error_is_that_against_the_truth_of_the_same_radius_and_falloff(measured: Curve, boxes: aolab.Scene):
     module = aolab.SSAO(radius=1.0)
     truth = reference(boxes, size=SIZE, rays=8, like=module, buffers=("visibility",))
@@ -114,6 +118,14 @@ def test_error_is_that_against_the_truth_of_the_same_radius_and_falloff(measured
     assert none.bias == pytest.approx(np.nanmean(1 - truth["visibility"]), abs=1e-6)
 
 
+@pytest.fixture
+def short_grid(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Each point compiles its own shader: two numbers of directions, and the filters."""
+    monkeypatch.setattr("aolab.studies.quality.FACTORS", {"directions": (0.5, 1)})
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("short_grid")
 def test_all_modules_have_the_radius_of_the_curve(boxes: aolab.Scene):
     reach = [curve(boxes, [aolab.SSAO(radius=9.0)], radius=radius, **FEW).points for radius in (0.1, 1.0)]
     same = curve(boxes, [aolab.SSAO(radius=0.5)], radius=0.1, **FEW).points
@@ -148,6 +160,8 @@ def test_visibility_error_of_equal_frames_is_zero(boxes: aolab.Scene):
     assert visibility_error(truth, truth)["maximum"] == 0
 
 
+@pytest.mark.slow
+@pytest.mark.usefixtures("short_grid")
 def test_command_writes_picture_and_data_beside_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     small = "x".join(map(str, SIZE))
     output = tmp_path / "curve.png"
@@ -161,8 +175,8 @@ def test_command_writes_picture_and_data_beside_it(tmp_path: Path, capsys: pytes
     assert {"renderer", "machine", "radius", "rays", "truth_standard_error"} <= set(data)
     assert (data["scene"], data["size"], data["frames"]) == ("boxes", list(SIZE), 3)
     assert {point["module"] for point in data["points"]} == set(MODULES)
-    assert len(data["points"]) == 1 + 72 * (len(MODULES) - 1)  # `none` has nothing to trade
-    for text in (data["renderer"], data["machine"], "ssao 8×4 box4, default"):
+    assert len(data["points"]) == sum(len(settings(module())) for module in MODULES.values())
+    for text in (data["renderer"], data["machine"], "ssao 8 box4, default"):
         assert text in printed
 
 

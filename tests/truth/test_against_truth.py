@@ -6,7 +6,7 @@ from small_scenes import floor, of, quad, sphere
 
 import aolab
 
-CONVERGED = {"steps": 32, "directions": 16, "accumulate": 32, "filter": "none", "thickness": 10.0, "bias": 0.0}
+CONVERGED = {"steps": 32, "directions": 16, "accumulate": 8, "filter": "none", "thickness": 10.0, "bias": 0.0}
 
 
 def seen_whole(scene: aolab.Scene, radius: float, size: tuple[int, int], lab: aolab.Lab):
@@ -21,6 +21,7 @@ def seen_whole(scene: aolab.Scene, radius: float, size: tuple[int, int], lab: ao
     return frame, truth, known, reach[known]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("angle", [90.0, 120.0, 150.0])
 def test_a_corner_open_to_the_camera_agrees_with_rays(lab, angle):
     """Two planes that meet at an angle hide nothing from a camera above them: only sampling errors remain."""
@@ -28,17 +29,18 @@ def test_a_corner_open_to_the_camera_agrees_with_rays(lab, angle):
     wall = quad((0, 0, 50), (0, 0, -100), (-50 * np.cos(tilt), 50 * np.sin(tilt), 0), name="wall")
     camera = aolab.Camera(eye=(3, 5, 0.01), target=(0, 0, 0), fov=40)
     scene = of(quad((0, 0, 50), (50, 0, 0), (0, 0, -100), name="floor"), wall, camera=camera)
-    frame, truth, known, pixels = seen_whole(scene, 1.0, (192, 144), lab)
+    frame, truth, known, pixels = seen_whole(scene, 1.0, (128, 96), lab)
     error = (frame["visibility"] - truth["visibility"])[known]
     occluded = (truth["visibility"] < 0.99)[known]
     assert occluded.mean() > 0.05
     # beside the noise of the rays, the point is lifted by a pixel, which moves the corner by as much of a radius
     deviation = np.hypot(truth["standard_error"][known], 0.5 / pixels)
     score = error / deviation
-    assert abs(score[occluded].mean()) < 1.0
+    assert abs(score[occluded].mean()) < 0.7
     assert np.mean(np.abs(score) < 3) > 0.97
 
 
+@pytest.mark.slow
 def test_a_ball_on_a_floor_agrees_with_rays_where_it_is_seen(lab):
     """From above, the upper half of a ball that is sunk in the floor hides nothing."""
     camera = aolab.Camera(eye=(0, 8, 0.01), target=(0, 0, 0), fov=35)
@@ -49,6 +51,7 @@ def test_a_ball_on_a_floor_agrees_with_rays_where_it_is_seen(lab):
     assert abs(error.mean()) < 0.005
 
 
+@pytest.mark.slow
 def test_a_scan_on_a_floor_is_within_two_hundredths(lab, models):
     """16 directions × 4 steps at 960×540, the radius a fifth of the bunny's height: RMSE below 0.02."""
     loaded = aolab.load(models / "bunny.ply").instances[0].mesh

@@ -20,12 +20,14 @@ SIZE = (64, 48)
 FINE = 8  # our pixels are points: this many, squared, average to the area of one of Mitsuba's
 
 
-def imports_mitsuba() -> bool:
-    """In a process of its own: an import that stops half way must not stay."""
-    return not subprocess.run([sys.executable, "-c", "import mitsuba"], capture_output=True).returncode
+@pytest.fixture(scope="module")
+def mitsuba() -> None:
+    """Skips a test where Mitsuba cannot be imported; tried in another process, where half an import does no harm."""
+    if subprocess.run([sys.executable, "-c", "import mitsuba"], capture_output=True).returncode:
+        pytest.skip("needs Mitsuba: pip install mitsuba, and libatomic")
 
 
-needs_mitsuba = pytest.mark.skipif(not imports_mitsuba(), reason="needs Mitsuba: pip install mitsuba, and libatomic")
+needs_mitsuba = pytest.mark.usefixtures("mitsuba")
 
 
 def fine(buffer):
@@ -90,8 +92,8 @@ def test_unoccluded_ambient_light_is_right_where_nothing_blocks():
 
 @needs_mitsuba
 def test_radiance_is_the_sum_of_its_parts_and_max_depth_adds_bounces():
-    parts = path_traced(cornell(), size=SIZE, samples=64, buffers=("direct", "ambient", "indirect"))
-    frames = {depth: path_traced(cornell(), size=SIZE, samples=64, max_depth=depth) for depth in (2, 3, -1)}
+    parts = path_traced(cornell(), size=SIZE, samples=16, buffers=("direct", "ambient", "indirect"))
+    frames = {depth: path_traced(cornell(), size=SIZE, samples=16, max_depth=depth) for depth in (2, 3, -1)}
     inside = (slice(8, 40), slice(16, 48))  # no background
     two, three, all_of_them = (frames[depth]["radiance"][inside].mean() for depth in (2, 3, -1))
     direct, ambient, indirect = (parts[name][inside].mean() for name in ("direct", "ambient", "indirect"))
@@ -103,8 +105,16 @@ def test_radiance_is_the_sum_of_its_parts_and_max_depth_adds_bounces():
 
 
 @needs_mitsuba
-@pytest.mark.parametrize("shape", [(1, 2), (4, 8), (5, 7)])
-@pytest.mark.parametrize("target", [(0.2, 0.5, -1), (1, -0.3, 0.4), (-0.7, 1, 0.6), (0.1, -1, 0.1)])
+@pytest.mark.parametrize(
+    ("shape", "target"),
+    [
+        ((1, 2), (0.2, 0.5, -1)),
+        ((4, 8), (1, -0.3, 0.4)),
+        ((5, 7), (1, -0.3, 0.4)),
+        ((4, 8), (-0.7, 1, 0.6)),
+        ((5, 7), (0.1, -1, 0.1)),
+    ],
+)
 def test_the_environment_is_where_we_look_it_up(shape, target):
     """A map of random texels, seen in directions that hold its seam and both poles."""
     environment = aolab.Environment(np.random.default_rng(3).random((*shape, 3)))

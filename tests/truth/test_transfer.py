@@ -36,6 +36,7 @@ def test_obscurance_under_a_ceiling(measure, expected):
     assert frame["obscurance"].mean() == pytest.approx(expected, abs=2e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("albedo", [0.0, 0.5, 0.8])
 def test_path_tracing_between_planes_is_a_geometric_series(albedo):
     """Every point sees the same: W = k + (1 - k) a W. With one common albedo eq. 6 is exact."""
