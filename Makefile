@@ -24,13 +24,14 @@ $(shell grep -qxF "$$(pwd)" $(RUNTIME) 2>/dev/null || rm -f $(RUNTIME))
 
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png'
-	@echo 'make quick      format, lint, and the tests that are not slow'
-	@echo 'make test       format, lint, types, all tests, and those of OpenGL again limited to 3.3'
-	@echo 'make figures    draw the figures and tables of the papers, and test their claims'
-	@echo 'make docs       build the documentation into docs/_build/html'
-	@echo 'make bench      time every pass'
-	@echo 'make clean      remove what was built; make distclean also removes .venv'
-	@echo 'PYTHON=...      the Python (3.11 or newer) that .venv is made from'
+	@echo 'make quick      format, lint, and the tests that are not slow: 1 minute on two cores'
+	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 3 minutes on two cores'
+	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 1 minute on two cores'
+	@echo 'make docs       build the documentation into docs/_build/html: 1 minute'
+	@echo 'make bench      time every pass: 2 minutes'
+	@echo 'make clean      remove the files that were built; make distclean also removes .venv'
+	@echo 'PYTHON=...      the Python (3.11 or newer) that .venv is made from; the set-up takes 2 minutes, once'
+	@echo 'WORKERS=...     the number of test processes; by default one for each core, at most 8'
 
 demo: $(RUNTIME)
 	$(RUN) examples/demo.py out/demo.png
