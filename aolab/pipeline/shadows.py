@@ -51,7 +51,7 @@ def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.n
     centre, radius = scene.bounds.mean(axis=0), scene.radius * 1.001
     if isinstance(light, DirectionalLight):
         direction = np.asarray(light.direction) / np.linalg.norm(light.direction)
-        return [(look_along(centre - direction * radius, direction), orthographic(radius, 2 * radius))]
+        return [(look_along(centre - direction * radius, direction), orthographic(radius, radius, 0, 2 * radius))]
     position = np.asarray(light.position, float)
     far = float(np.linalg.norm(position - centre)) + radius
     near = far * 1e-3

@@ -61,3 +61,9 @@ class SpotLight:
 
 
 Light = DirectionalLight | PointLight | SpotLight
+MAX_SHADOW_TILES = 32  # mat4 uniforms: OpenGL 3.3 grants 1024 floats, and these take 512
+
+
+def shadow_tiles(light: Light) -> int:
+    """How many shadow maps the light needs, were it to cast a shadow: a point light looks along six axes."""
+    return 6 if isinstance(light, PointLight) else 1
