@@ -61,7 +61,7 @@ class SpotLight:
 
 
 Light = DirectionalLight | PointLight | SpotLight
-MAX_SHADOW_TILES = 32  # mat4 uniforms: OpenGL 3.3 grants 1024 floats, and these take 512
+MAX_SHADOW_TILES = 256  # shadow maps of all lights: an atlas of 8192 pixels a side, 256 MB
 
 
 def shadow_tiles(light: Light) -> int:
