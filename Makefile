@@ -20,13 +20,14 @@ FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
 $(shell grep -qxF "$$(pwd)" $(RUNTIME) 2>/dev/null || rm -f $(RUNTIME))
 
 .NOTPARALLEL:
-.PHONY: help demo lint types full gl33 quick test figures figures-if-changed docs bench clean distclean
+.PHONY: help demo lint types full gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
 
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png'
 	@echo 'make quick      format, lint, and the tests that are not slow: 1 minute on two cores'
 	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 3 minutes on two cores'
 	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 1 minute on two cores'
+	@echo 'make fuzz       load 800 damaged files of 16 kinds: 2 minutes'
 	@echo 'make docs       build the documentation into docs/_build/html: 1 minute'
 	@echo 'make bench      time every pass: 2 minutes'
 	@echo 'make clean      remove the files that were built; make distclean also removes .venv'
@@ -44,15 +45,18 @@ types: $(DEV)
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(RUN) -m pyright
 
 full: $(DEV)
-	$(PYTEST) -m 'not figures'
+	$(PYTEST) -m 'not (figures or fuzz)'
 
 gl33: $(DEV)
 	$(GL33) $(PYTEST) -m 'not slow' $(GL33_TESTS)
 
 quick: lint
-	$(PYTEST) -m 'not (slow or figures or wheel or browser)'
+	$(PYTEST) -m 'not (slow or figures or fuzz or wheel or browser)'
 
 test: lint types full gl33
+
+fuzz: $(DEV)
+	$(PYTEST) -m fuzz
 
 figures: $(DEV)
 	$(PYTEST) -m figures

@@ -36,6 +36,12 @@ class Notice(UserWarning):
     """A warning: input was repaired or left out, and the result is still usable. The shell prints it as a note."""
 
 
+def shorten(name: str, limit: int = 80) -> str:
+    """A name from a file on one line, in printable characters; of a longer one than `limit`, both ends."""
+    line = "".join(character if character.isprintable() else "�" for character in name)
+    return line if len(line) <= limit else f"{line[: limit // 2]}...{line[-(limit // 2 - 3) :]}"
+
+
 def suggestion(name: str, known: Iterable[str]) -> str:
     """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names."""
     names = sorted(known)

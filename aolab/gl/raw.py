@@ -14,6 +14,7 @@ Enum = ctypes.c_uint
 
 _COLOR_LOGIC_OP, _OR = 0x0BF2, 0x1507  # GL_COLOR_LOGIC_OP, GL_OR
 _COLOR = 0x1800  # GL_COLOR, of glClearBuffer
+_TEXTURE_2D, _WRAP, _MIRRORED_REPEAT = 0x0DE1, (0x2802, 0x2803), 0x8370  # GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T
 
 
 def function(name: str, result: Any, *arguments: Any) -> Callable[..., Any]:
@@ -52,3 +53,7 @@ def or_bits() -> Iterator[None]:
         yield
     finally:
         gl.disable_direct(_COLOR_LOGIC_OP)
+def mirror(texture: moderngl.Texture, axis: int) -> None:
+    """Let the texture go on mirrored along an axis, 0 for u and 1 for v."""
+    texture.use(0)
+    function("glTexParameteri", None, Enum, Enum, ctypes.c_int)(_TEXTURE_2D, _WRAP[axis], _MIRRORED_REPEAT)

@@ -16,30 +16,34 @@ def load(source: object, **parameters: object) -> Scene:
 
     - a scene of `scenes/` by name, with its parameters as keywords or in a query: `load("toasters", time=1.5)`,
       `load("toasters?time=1.5")`;
-    - a file: `.glb`, `.gltf`, `.obj` (with `.mtl`), `.ply`, `.stl`. What it refers to must lie in its own folder;
+    - a file: `.glb`, `.gltf`, `.obj` (with `.mtl`), `.ply`, `.stl`, `.off`, `.3mf`, with parameters likewise:
+      `load("walk.glb", time=0.5)`, `load("scan.ply?up_axis=z")`. Files that it refers to must lie in its own folder;
     - a `trimesh.Scene` or `trimesh.Trimesh`, a `pyrender.Scene`, or an `aolab.Scene`, which is returned as it is.
 
-    What survives: node transforms, instances (a mesh placed twice is one `Mesh` in two `Instance`s), normals, UV,
-    base colour and its texture, vertex colours, alpha masks, the first perspective camera (its clip planes are left
-    to the scene), and the lights of glTF (KHR_lights_punctual: lux and candela are taken as irradiance and intensity
-    as they are) and pyrender. A source with lights but no environment gets `Environment.sky()`, so that ambient light
-    has something to show; one without both gets the default sky and sun.
+    A file's parameters: `time` (seconds) and `animation` (name or number) pose a glTF animation; `up_axis` ("y" or
+    "z") is the axis that points up; `shadows` limits how many lights cast shadows; `memory` ("4GB") is how much the
+    scene may take, 2 GB unless `AOLAB_MEMORY` is set.
 
-    Raises `FileError` for an unknown scene and a file that is missing, corrupt or refused, `SceneError` for contents
-    that cannot be drawn, `ParameterError` for an unknown parameter or source. What was left out or repaired is a
-    `Notice`.
+    docs/files.md lists what is drawn of each format. A part that cannot be drawn is left out, or repaired, with a
+    `Notice`. A source with lights but no environment gets `Environment.sky()`, so that ambient light has something to
+    show; a source without both gets the default sky and sun.
+
+    Raises `FileError` for an unknown scene and a file that is missing, corrupt or refused, `SceneError` where nothing
+    can be drawn, `ParameterError` for an unknown parameter or source.
     """
     if isinstance(source, str) and (named := load_scene(source, parameters)) is not None:
         return named
-    if parameters:
-        given = ", ".join(parameters)
-        raise ParameterError(f"parameters ({given}) are for the scenes of scenes/; {_describe(source)} takes none")
-    if isinstance(source, Scene):
-        return source
     if isinstance(source, (str, PathLike)):
         from .files import load_file
 
-        return load_file(source)
+        return load_file(source, parameters)
+    if parameters:
+        given = ", ".join(parameters)
+        raise ParameterError(
+            f"parameters ({given}) are for the scenes of scenes/ and for files; {_describe(source)} takes none"
+        )
+    if isinstance(source, Scene):
+        return source
     packages = {base.__module__.partition(".")[0] for base in type(source).__mro__}
     if "trimesh" in packages:
         from .trimeshes import scene_from_trimesh
@@ -56,6 +60,4 @@ def load(source: object, **parameters: object) -> Scene:
 
 
 def _describe(source: object) -> str:
-    return (
-        f"'{source}'" if isinstance(source, (str, PathLike)) else f"a {type(source).__module__}.{type(source).__name__}"
-    )
+    return f"a {type(source).__module__}.{type(source).__name__}"

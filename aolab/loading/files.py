@@ -1,50 +1,104 @@
 """Model files: checked before they are read, and every failure told in terms of the file."""
 
-import io
-import warnings
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from importlib import import_module
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from ..errors import Error, FileError, Notice, SceneError, suggestion
-from ..pictures.images import read_image
-from ..scene.mesh import Texture
+import numpy as np
+
+from ..errors import Error, FileError, ParameterError, SceneError, shorten, suggestion
+from ..input import Budget, kind, read_file
 from ..scene.scene import Scene
-from .folder import Folder, decoded
-from .reading import read_trimesh
+from .folder import Folder
+from .options import FileOptions, options_from, query_of, turned_up
+from .parts import Content, scene_of
 
-if TYPE_CHECKING:
-    pass
+# by the end of the file's name: the format, and the module of this package whose `read` reads it
+FORMATS = {
+    ".glb": ("glTF", "gltf.reader"),
+    ".gltf": ("glTF", "gltf.reader"),
+    ".obj": ("Wavefront OBJ", "obj"),
+    ".ply": ("PLY", "ply"),
+    ".stl": ("STL", "stl"),
+    ".off": ("OFF", "off"),
+    ".3mf": ("3MF", "threemf"),
+}
+ANIMATED = "glTF"
+Z_UP = "3MF"
+# formats that people try, and the way to one that is read
+OTHERS = {
+    ".gz": "decompress it first",
+    ".zip": "extract it first",
+    ".7z": "extract it first",
+    ".dae": "export it as .glb",
+    ".fbx": "export it as .glb",
+    ".blend": "export it as .glb from Blender",
+    ".usd": "export it as .glb",
+    ".usda": "export it as .glb",
+    ".usdc": "export it as .glb",
+    ".usdz": "export it as .glb",
+    ".vrm": "rename it to .glb: it is glTF",
+    ".3ds": "export it as .glb",
+    ".x3d": "export it as .glb",
+    ".wrl": "export it as .glb",
+    ".step": "export it as .glb or .stl",
+    ".stp": "export it as .glb or .stl",
+    ".ifc": "export it as .glb",
+}
 
-FORMATS = {".glb": "glTF", ".gltf": "glTF", ".obj": "Wavefront OBJ", ".ply": "PLY", ".stl": "STL"}
+
+def load_file(source: str | PathLike[str], keywords: Mapping[str, object]) -> Scene:
+    """The scene in a model file. Raises `FileError`, `SceneError` and `ParameterError`, all naming the file."""
+    path, query = _path_and_query(source)
+    options = options_from(str(path), query, keywords)
+    file_format, module = FORMATS[path.suffix.lower()]
+    if file_format != ANIMATED and (options.time is not None or options.animation is not None):
+        raise ParameterError(f"{path}: time and animation are for {ANIMATED}; {file_format} has no animations")
+    # numbers of a file may be of any size: `Mesh` and others refuse what is not finite
+    with _named_errors(path, file_format), np.errstate(all="ignore"):
+        content = _content(path, file_format, module, options)
+        return scene_of(content, shorten(path.stem), f"{path}{query_of(options)}", options.shadows)
 
 
-def load_file(source: str | PathLike[str]) -> Scene:
-    """The scene in a model file. Raises `FileError` and `SceneError`, both naming the file."""
-    path = _existing_file(source)
-    file_format = FORMATS[path.suffix.lower()]
-    folder = Folder(path)
-    with _named_errors(path, file_format):
-        if file_format == "glTF":
-            from .gltf import scene_from_gltf
-
-            scene = scene_from_gltf(path, folder)
-        else:
-            scene = _scene_from_other(path, folder)
-        return scene.replace(name=path.stem, source=str(source))
+def _content(path: Path, file_format: str, module: str, options: FileOptions) -> Content:
+    budget = Budget(options.memory)
+    data = read_file(path, "the file", budget)
+    if not data:
+        raise FileError("is empty (0 bytes)")
+    root = turned_up(options.up_axis or ("z" if file_format == Z_UP else "y"))
+    read: Callable[..., Content] = import_module(f".{module}", __package__).read
+    return read(data, path, Folder(path, budget), options, root)
 
 
-def _existing_file(source: str | PathLike[str]) -> Path:
+def _path_and_query(source: str | PathLike[str]) -> tuple[Path, str]:
+    """The existing file that `source` names, and the parameters behind its name."""
+    text = str(source)
+    if "://" in text:
+        raise FileError(f"'{shorten(text, 200)}' is a URL; download the file and load that")
+    name, separator, query = text.rpartition("?")
+    if separator and not _exists(text):
+        return _existing_file(name), query
+    return _existing_file(text), ""
+
+
+def _exists(text: str) -> bool:
+    try:
+        return Path(text).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _existing_file(source: str) -> Path:
     path = Path(source)
     known = ", ".join(FORMATS)
-    if "://" in str(source):
-        raise FileError(f"'{source}' is a URL; download the file and load that")
     try:
         exists, is_directory = path.exists(), path.is_dir()
+        mode = path.stat().st_mode if exists else 0
     except (OSError, ValueError) as error:
-        raise FileError(f"'{source}' is no file name: {error}") from error
+        reason = getattr(error, "strerror", None) or "it holds a zero character"
+        raise FileError(f"'{shorten(source, 200)}' is no file name: {reason}") from error
     if is_directory:
         models = sorted(child.name for child in path.iterdir() if child.suffix.lower() in FORMATS)
         raise FileError(f"{path} is a directory; give a file in it ({', '.join(models) or 'it holds no model'})")
@@ -53,56 +107,38 @@ def _existing_file(source: str | PathLike[str]) -> Path:
             raise FileError(f"no file {path}: there is no folder {path.parent}")
         models = [child.name for child in path.parent.iterdir() if child.suffix.lower() in FORMATS]
         raise FileError(f"no file {path}{suggestion(path.name, models)}")
-    if path.suffix.lower() not in FORMATS:
-        raise FileError(f"{path}: unknown extension '{path.suffix}'; known: {known}")
-    if path.is_file() and path.stat().st_size == 0:
-        raise FileError(f"{path} is empty (0 bytes)")
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        way = f"; {OTHERS[suffix]}" if suffix in OTHERS else ""
+        raise FileError(f"{path}: unknown extension '{path.suffix}'{way}; known: {known}")
+    if not path.is_file():
+        raise FileError(f"{path} is {kind(mode)}; give a regular file")
     return path
 
 
 @contextmanager
 def _named_errors(path: Path, file_format: str) -> Iterator[None]:
-    """Our errors get the file's name; everything else that a reader raises becomes a `FileError` with its reason."""
+    """Our errors get the file's name; an error that no reader foresaw becomes a `FileError`."""
     try:
         yield
-    except SceneError as error:
-        raise SceneError(f"{path}: {error}") from error
     except Error as error:
         if str(path) in str(error):
             raise
-        raise FileError(f"{path}: {error}") from error
+        named = (
+            SceneError
+            if isinstance(error, SceneError)
+            else ParameterError
+            if isinstance(error, ParameterError)
+            else FileError
+        )
+        text = str(error)
+        joined = f"{path} {text}" if text.startswith(("is ", "ends ", "holds ")) else f"{path}: {text}"
+        raise named(joined) from error
+    except Warning:  # a notice, where the caller turns notices into errors
+        raise
+    except MemoryError as error:
+        raise FileError(f"{path}: there is not enough memory to read it") from error
     except Exception as error:
-        reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-        raise FileError(f"cannot read {path} as {file_format}: {reason}") from error
-
-
-def _scene_from_other(path: Path, folder: Folder) -> Scene:
-    import trimesh
-
-    from .trimeshes import scene_from_trimesh
-
-    data, suffix = path.read_bytes(), path.suffix.lower()
-    if suffix == ".stl":
-        _refuse_truncated_stl(data)
-    file = io.StringIO(decoded(data)) if suffix == ".obj" else io.BytesIO(data)
-    loaded = read_trimesh(file, suffix[1:], folder)
-    if folder.refused:
-        raise folder.refused[0]
-    for name in dict.fromkeys(folder.missing):
-        kind = "material file" if name.lower().endswith(".mtl") else "texture"
-        warnings.warn(f"{path}: its {kind} '{name}' is missing; drawn without", Notice, stacklevel=4)
-    images = {name: data for name, data in folder.read.items() if not name.lower().endswith(".mtl")}
-    textures = {name: Texture(read_image(data, name), name) for name, data in images.items()}
-    names = list(loaded.geometry)
-    if len(names) == 1 and names[0].startswith("geometry_"):  # PLY and STL name nothing; the file's name says more
-        loaded = trimesh.Scene({path.stem: loaded.geometry[names[0]]})
-    return scene_from_trimesh(loaded, textures)
-
-
-def _refuse_truncated_stl(data: bytes) -> None:
-    """A binary STL is 84 bytes and 50 a triangle; of a shorter one trimesh tries to make text."""
-    if data[:5].lower() == b"solid":  # text
-        return
-    expected = 84 + 50 * int.from_bytes(data[80:84], "little")
-    if len(data) < expected:
-        raise FileError(f"is truncated or no STL file: {len(data)} of {expected} bytes")
+        raise FileError(
+            f"cannot read {path} as {file_format}: it is corrupt in a way that the reader did not foresee"
+        ) from error

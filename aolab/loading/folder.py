@@ -1,68 +1,61 @@
-"""What a model file may read besides itself: files inside its own folder, nothing else."""
+"""The files that a model file may read besides itself: those inside its own folder, nothing else."""
 
+import codecs
 import re
 from pathlib import Path
 from urllib.parse import unquote
 
-from ..errors import FileError
+from ..errors import FileError, shorten
+from ..input import Budget, read_file
 
 _URL = re.compile(r"[a-z][a-z0-9+.-]*:", re.IGNORECASE)  # also the drive letter of a Windows path
+UTF_16 = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 
 
 def decoded(data: bytes) -> str:
-    """The text of an OBJ or MTL file, whose encoding nothing says: UTF-8, or else Latin-1, as old exporters write."""
+    """The text of an OBJ or MTL file, which does not state its encoding, with "\\n" between its lines.
+
+    UTF-8, UTF-16 where a byte order mark begins the file, or else Latin-1, as old exporters write.
+    """
     try:
-        return data.decode("utf-8-sig")
+        text = data.decode(UTF_16.get(data[:2], "utf-8-sig"))
     except UnicodeDecodeError:
-        return data.decode("latin-1")
+        text = data.decode("latin-1")
+    return text.replace("\r\n", "\n").replace("\r", "\n")
 
 
 class Folder:
-    """The folder of the model file `model`, with the part of trimesh's resolver interface that its loaders use.
+    """The folder of the model file `model`; `budget` counts all that is read from it."""
 
-    trimesh swallows what a resolver raises, so it is kept: `refused` (errors), `missing` (names), and what was `read`.
-    """
-
-    def __init__(self, model: Path) -> None:
-        self.model = model
-        self.file_name = model.stem  # trimesh names the meshes of an OBJ after it
+    def __init__(self, model: Path, budget: Budget) -> None:
+        self.model, self.budget = model, budget
         self.root = model.parent.resolve()
-        self.refused: list[FileError] = []
-        self.missing: list[str] = []
-        self.read: dict[str, bytes] = {}
 
     def get(self, name: str) -> bytes:
         """The contents of the file `name`, a path relative to the folder, `/` or `\\` between its parts.
 
         Raises `FileError` for a name that leaves the folder or is a URL, `FileNotFoundError` for a missing file.
         """
-        try:
-            path = self._find(name)
-        except FileError as error:
-            self.refused.append(error)
-            raise
+        path = self._find(name)
         if path is None:
-            self.missing.append(name)
             raise FileNotFoundError(name)
-        data = path.read_bytes()
-        self.read[name] = decoded(data).encode() if path.suffix.lower() == ".mtl" else data
-        return self.read[name]
-
-    __getitem__ = get
+        return read_file(path, f"'{shorten(name)}'", self.budget)
 
     def _find(self, name: str) -> Path | None:
-        # glTF percent-encodes its URIs, and MTL does not: what is on the disk decides
+        shown = f"'{shorten(name)}'"
+        # glTF percent-encodes its URIs, and MTL does not: the file that exists decides
         candidates = [candidate.strip().replace("\\", "/") for candidate in (name, unquote(name))]
         for candidate in candidates:
             if _URL.match(candidate):
-                raise FileError(f"{self.model} refers to '{name}', a URL or absolute path; it is not fetched")
+                raise FileError(f"{shown} is a URL or absolute path; it is not fetched")
             try:
                 path = (self.root / candidate).resolve()
                 inside = path.is_relative_to(self.root)
-            except (OSError, ValueError, RuntimeError) as error:  # a loop of links, a NUL, too long a name
-                raise FileError(f"{self.model} refers to '{name}', which is no file name: {error}") from error
+                found = inside and path.exists() and not path.is_dir()
+            except (OSError, ValueError, RuntimeError):  # a loop of links, a NUL, too long a name
+                raise FileError(f"{shown} is no file name") from None
             if not inside:
-                raise FileError(f"{self.model} refers to '{name}', outside its folder {self.root}; it is not read")
-            if path.is_file():
+                raise FileError(f"{shown} lies outside its folder {self.root}; it is not read")
+            if found:
                 return path
         return None

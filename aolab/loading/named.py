@@ -53,7 +53,7 @@ def load_scene(source: str, parameters: Mapping[str, object]) -> Scene | None:
     function = _function(name)
     known = _signature(function)
     values: dict[str, object] = {}
-    for key, value in [*_parse_query(source, query), *parameters.items()]:
+    for key, value in [*parse_query(source, query), *parameters.items()]:
         if key not in known:
             raise ParameterError(f"scene '{name}' has no parameter '{key}'{suggestion(key, known)}{_defaults(known)}")
         if key in values:
@@ -114,7 +114,8 @@ def _defaults(known: Mapping[str, inspect.Parameter]) -> str:
     return " (parameters: " + ", ".join(f"{key}={_text(known[key].default)}" for key in known) + ")"
 
 
-def _parse_query(source: str, query: str) -> list[tuple[str, str]]:
+def parse_query(source: str, query: str) -> list[tuple[str, str]]:
+    """The pairs of `key=value&...`. Raises `ParameterError`, with the `source`, for anything else."""
     pairs = []
     for part in query.split("&") if query else []:
         key, equals, value = part.partition("=")

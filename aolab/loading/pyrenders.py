@@ -1,17 +1,18 @@
 """From pyrender's scenes to ours. pyrender itself is not imported: its objects are read by their attributes."""
 
-import warnings
 from typing import Any
 
 import numpy as np
 
-from ..errors import Notice, SceneError
+from ..errors import SceneError
 from ..scene.camera import Camera
 from ..scene.environment import Environment
-from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
-from ..scene.mesh import Material, Mesh, Texture
-from ..scene.scene import Instance, Scene
-from .trimeshes import alpha_of, camera_from_pose, linear_colors, lit_scene
+from ..scene.lights import Light
+from ..scene.mesh import Material, Texture
+from ..scene.scene import Scene
+from .materials import alpha_drawn, linear_colors
+from .parts import Content, Notes, Part, Placed, scene_of
+from .placing import camera_at, light_at
 
 TRIANGLES = 4  # GL's number, which pyrender uses
 
@@ -26,9 +27,9 @@ def scene_from_pyrender(source: Any) -> Scene:
         raise SceneError(f"cannot draw a pyrender.{type(source).__name__}; give a pyrender.Scene")
     # `source.nodes` is a set, whose order changes from run to run; the graph keeps the order in which they were added
     poses = {node: source.get_pose(node) for node in source._digraph.nodes if node in source.nodes}
-    meshes: dict[int, Mesh] = {}
+    parts: dict[int, Part] = {}
     textures: dict[int, Texture] = {}
-    instances, left_out = [], []
+    content = Content()
     for node, pose in poses.items():
         if node.mesh is None or not node.mesh.is_visible:
             continue
@@ -36,37 +37,34 @@ def scene_from_pyrender(source: Any) -> Scene:
             name = node.mesh.name or node.name or "mesh"
             name = name if len(node.mesh.primitives) == 1 else f"{name} {index}"
             if primitive.mode != TRIANGLES:
-                left_out.append(f"'{name}' (mode {primitive.mode})")
+                content.left_out.append(f"'{name}' holds no triangles (mode {primitive.mode})")
                 continue
-            if id(primitive) not in meshes:
-                meshes[id(primitive)] = _mesh(primitive, name, textures)
+            if id(primitive) not in parts:
+                parts[id(primitive)] = _part(primitive, name, textures, content.notes)
             offsets = [np.eye(4)] if primitive.poses is None else primitive.poses
-            instances += [Instance(meshes[id(primitive)], pose @ offset, node.name or name) for offset in offsets]
-    if left_out and instances:
-        warnings.warn(f"left out, as they hold no triangles: {', '.join(left_out)}", Notice, stacklevel=3)
-    if not instances:
-        raise SceneError(f"no triangles: the pyrender scene holds only {', '.join(left_out) or 'no visible mesh'}")
-    lights = [_light(node.light, pose) for node, pose in poses.items() if node.light is not None]
-    scene = lit_scene(instances, lights, _camera(source, poses))
+            part = parts[id(primitive)]
+            content.placed += [Placed(part, pose @ offset, node.name or name) for offset in offsets]
+    content.lights = [_light(node.light, pose) for node, pose in poses.items() if node.light is not None]
+    content.camera = _camera(source, poses, content.notes)
     if np.any(source.ambient_light):
-        return scene.replace(environment=Environment.constant(source.ambient_light), lights=tuple(lights))
-    return scene
+        content.environment = Environment.constant(source.ambient_light)
+    return scene_of(content)
 
 
-def _mesh(primitive: Any, name: str, textures: dict[int, Texture]) -> Mesh:
+def _part(primitive: Any, name: str, textures: dict[int, Texture], notes: Notes) -> Part:
     indices = primitive.indices
-    return Mesh(
+    return Part(
         vertices=primitive.positions,
         faces=np.arange(len(primitive.positions)).reshape(-1, 3) if indices is None else indices.reshape(-1, 3),
         normals=primitive.normals,
         uv=None if primitive.texcoord_0 is None else primitive.texcoord_0[:, :2],
         colors=None if primitive.color_0 is None else linear_colors(primitive.color_0, srgb=False),
-        material=_material(primitive, name, textures),
+        material=_material(primitive, name, textures, notes),
         name=name,
     )
 
 
-def _material(primitive: Any, mesh: str, textures: dict[int, Texture]) -> Material:
+def _material(primitive: Any, mesh: str, textures: dict[int, Texture], notes: Notes) -> Material:
     source = primitive.material
     if source is None:
         return Material()
@@ -81,8 +79,9 @@ def _material(primitive: Any, mesh: str, textures: dict[int, Texture]) -> Materi
         texture = textures[id(image)]
     # pyrender's default material is BLEND; it blends only what has an alpha below 1
     mode = source.alphaMode if source.alphaMode != "BLEND" or primitive.is_transparent else None
-    cutoff = alpha_of(mode, source.alphaCutoff, f"material '{name}'")
-    return Material(tuple(np.asarray(factor, float)[:3].tolist()), texture, float(factor[3]), cutoff, name)
+    drawn = alpha_drawn(mode, source.alphaCutoff, f"'{name}'", notes)
+    rgb, alpha = tuple(np.asarray(factor, float)[:3].tolist()), float(factor[3])
+    return Material(rgb, texture, alpha, name=name, double_sided=bool(source.doubleSided), **drawn)
 
 
 def _rgba(pixels: Any) -> np.ndarray:
@@ -93,25 +92,24 @@ def _rgba(pixels: Any) -> np.ndarray:
     return alpha
 
 
-def _camera(source: Any, poses: dict[Any, np.ndarray]) -> Camera | None:
+def _camera(source: Any, poses: dict[Any, np.ndarray], notes: Notes) -> Camera | None:
     node = source.main_camera_node
     if node is None:
         return None
-    if not hasattr(node.camera, "yfov"):
-        kind = type(node.camera).__name__
-        text = f"a pyrender {kind} cannot be used; a perspective camera frames the scene instead"
-        warnings.warn(text, Notice, stacklevel=4)
-        return None
-    return camera_from_pose(poses[node], float(np.degrees(node.camera.yfov)))
+    camera = node.camera
+    planes = {"near": camera.znear or None, "far": camera.zfar}
+    if hasattr(camera, "ymag"):
+        return camera_at(poses[node], ortho=2 * float(camera.ymag), **planes)
+    if hasattr(camera, "yfov"):
+        return camera_at(poses[node], fov=float(np.degrees(camera.yfov)), **planes)
+    kind = type(camera).__name__
+    notes.add(f"a pyrender {kind} cannot be used; a perspective camera frames the scene instead")
+    return None
 
 
 def _light(light: Any, pose: np.ndarray) -> Light:
-    red, green, blue = (np.asarray(light.color, float)[:3] * light.intensity).tolist()
-    x, y, z = (-pose[:3, 2]).tolist()
-    position = tuple(pose[:3, 3].tolist())
+    color = np.asarray(light.color, float)[:3] * light.intensity
+    cone = None
     if hasattr(light, "outerConeAngle"):
-        inner, outer = np.degrees([light.innerConeAngle, light.outerConeAngle]).tolist()
-        return SpotLight(position, (x, y, z), (red, green, blue), inner, outer)
-    if hasattr(light, "range"):
-        return PointLight(position, (red, green, blue))
-    return DirectionalLight((x, y, z), (red, green, blue))
+        cone = np.degrees([light.innerConeAngle, light.outerConeAngle]).tolist()
+    return light_at(pose, color, has_position=cone is not None or hasattr(light, "range"), cone=cone)

@@ -23,6 +23,7 @@ def perspective(tan_x: float, tan_y: float, near: float, far: float) -> np.ndarr
     return np.array([[1 / tan_x, 0, 0, 0], [0, 1 / tan_y, 0, 0], [0, 0, *depth], [0, 0, -1, 0]], float)
 
 
-def orthographic(radius: float, far: float) -> np.ndarray:
-    """clip_from_view of a box of half width `radius`, from 0 to `far` along -z."""
-    return np.array([[1 / radius, 0, 0, 0], [0, 1 / radius, 0, 0], [0, 0, -2 / far, -1], [0, 0, 0, 1]], float)
+def orthographic(half_x: float, half_y: float, near: float, far: float) -> np.ndarray:
+    """clip_from_view of a box of half the width and height, from `near` to `far` along -z."""
+    depth = -2 / (far - near), -(far + near) / (far - near)
+    return np.array([[1 / half_x, 0, 0, 0], [0, 1 / half_y, 0, 0], [0, 0, *depth], [0, 0, 0, 1]], float)

@@ -1,6 +1,6 @@
 """Telling errors apart: what of a module's error is noise, filter, steps, layers, screen border, and method."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
@@ -150,9 +150,9 @@ def _with_margin(
     """The buffers of a larger image, cut to `size`: pixel for pixel the same view, but its border has neighbours."""
     margin = 4 * round(MARGIN * size[1] / 4)  # whole periods of the interleaved pattern
     larger = size[0] + 2 * margin, size[1] + 2 * margin
-    tan = np.tan(np.radians(camera.fov) / 2) * larger[1] / size[1]
-    wide = replace(camera, fov=float(2 * np.degrees(np.arctan(tan))))
-    frame = lab.render(scene, module, camera=wide, size=larger, seed=seed, accumulate=frames)
+    frame = lab.render(
+        scene, module, camera=camera.with_margin(size, larger), size=larger, seed=seed, accumulate=frames
+    )
     cut = slice(margin, margin + size[1]), slice(margin, margin + size[0])
     return {name: frame[name][cut] for name in frame.buffers}
 

@@ -21,7 +21,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
     ),
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel",),
-    "the mesh": ("base_color", "alpha_cutoff"),
+    "the mesh": ("base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided"),
 }  # fmt: skip
 
 

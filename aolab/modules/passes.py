@@ -43,7 +43,7 @@ class GeometryPass(Pass):
     the viewpoint's size. `clear` (buffer: value) fills outputs before drawing; without it, they start as 0. `combine`
     decides between a fragment and its pixel: `nearest` tests the depth, `or` sets bits of unsigned integers.
     Vertex shaders may read `local_position`, `local_normal`, `texture_uv`, `vertex_color` and `world_from_local`;
-    fragment shaders may sample `base_texture`, and read `base_color` and `alpha_cutoff`, of each mesh.
+    fragment shaders may include lib/base_color.glsl for the colour and the holes of each mesh.
     """
 
     vertex: str = "pipeline/gbuffer.vert"

@@ -23,16 +23,19 @@ def read_header(data: bytes) -> tuple[int, int, np.ndarray, int]:
     for line in data[:end].decode("ascii", "replace").split("\n"):
         key, _, value = line.partition("=")
         if key == "FORMAT" and value.strip() != "32-bit_rle_rgbe":
-            raise ValueError(f"its FORMAT is '{value.strip()}', not '32-bit_rle_rgbe'")
+            raise ValueError(f"its FORMAT is '{value.strip()[:40]}', not '32-bit_rle_rgbe'")
         if key in ("EXPOSURE", "COLORCORR"):  # the writer multiplied the pixels by each of them
-            exposure *= np.array(value.split(), float)
+            try:
+                exposure *= np.array(value.split(), float)
+            except ValueError:
+                raise ValueError(f"its {key} is '{value[:40].strip()}', not a number or three") from None
     if not (np.isfinite(exposure).all() and (exposure > 0).all()):
         raise ValueError(f"its exposure is {exposure.tolist()}")
     start = data.find(b"\n", end + 2, end + 2 + 64) + 1
     resolution = data[end + 2 : start].decode("ascii", "replace").strip()
     size = re.fullmatch(r"-Y\s+(\d{1,9})\s+\+X\s+(\d{1,9})", resolution)
     if size is None:
-        raise ValueError(f"its resolution line is '{resolution}', not '-Y <height> +X <width>'")
+        raise ValueError(f"its resolution line is '{resolution[:64]}', not '-Y <height> +X <width>'")
     return int(size[1]), int(size[2]), exposure, start
 
 

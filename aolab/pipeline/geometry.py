@@ -1,21 +1,26 @@
 """Meshes and their textures on the GPU, kept for as long as the mesh lives."""
 
-import warnings
 import weakref
 from dataclasses import dataclass, field
 
 import moderngl
 import numpy as np
-from PIL import Image
 
-from ..errors import Notice
 from ..gl import context
 from ..gl.program import Program
 from ..gl.texture import refuse_exhaustion
 from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Instance, Scene
+from .textures import upload
 
-GL_SRGB8_ALPHA8 = 0x8C43
+# of each mesh in turn; see glsl/lib/base_color.glsl
+MESH_UNIFORMS: dict[str, object] = {
+    "base_color": (1.0, 1.0, 1.0, 1.0),
+    "alpha_cutoff": -1.0,
+    "blended": False,
+    "mesh_number": 0.0,
+    "single_sided": False,
+}
 
 
 @dataclass
@@ -32,14 +37,15 @@ class Geometry:
 
     def __init__(self) -> None:
         self._meshes: weakref.WeakKeyDictionary[Mesh, _GpuMesh] = weakref.WeakKeyDictionary()
-        self._textures: weakref.WeakKeyDictionary[Texture, moderngl.Texture] = weakref.WeakKeyDictionary()
+        self._textures: weakref.WeakKeyDictionary[Texture, dict[float | None, moderngl.Texture]]
+        self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut
         self._white: moderngl.Texture | None = None
 
     def draw(self, scene: Scene, program: Program) -> None:
-        """Draw every instance; sets the program's base_color and alpha_cutoff, and puts base_texture on unit 0."""
-        for mesh, placements in self._by_mesh(scene).items():
-            gpu = self._place(mesh, placements)
-            self._use_material(mesh, program)
+        """Draw every instance; sets the program's `MESH_UNIFORMS`, and puts base_texture on unit 0."""
+        for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
+            gpu = self._place(mesh, placements, scene.centre)
+            self._use_material(mesh, number, program)
             self._array(gpu, program).render(instances=len(placements))
 
     @staticmethod
@@ -49,9 +55,10 @@ class Geometry:
             groups.setdefault(instance.mesh, []).append(instance)
         return groups
 
-    def _place(self, mesh: Mesh, placements: list[Instance]) -> _GpuMesh:
-        # GLSL matrices are stored column by column
-        matrices = np.array([i.world_from_local.T for i in placements], np.float32).tobytes()
+    def _place(self, mesh: Mesh, placements: list[Instance], centre: np.ndarray) -> _GpuMesh:
+        placed = np.array([instance.world_from_local for instance in placements])
+        placed[:, :3, 3] -= centre
+        matrices = placed.transpose(0, 2, 1).astype(np.float32).tobytes()  # GLSL stores them column by column
         gpu = self._meshes.get(mesh)
         if gpu is None:
             gpu = self._meshes[mesh] = self._upload(mesh, matrices)
@@ -82,13 +89,23 @@ class Geometry:
             gpu.arrays[key] = context.get().vertex_array(program.gl, content, gpu.indices, skip_errors=True)
         return gpu.arrays[key]
 
-    def _use_material(self, mesh: Mesh, program: Program) -> None:
+    def _use_material(self, mesh: Mesh, number: int, program: Program) -> None:
         material = mesh.material
-        cutoff = -1.0 if material.alpha_cutoff is None else material.alpha_cutoff
-        for name, value in {"base_color": (*material.base_color, material.alpha), "alpha_cutoff": cutoff}.items():
+        values = MESH_UNIFORMS | {
+            "base_color": (*material.base_color, material.alpha),
+            "alpha_cutoff": -1.0 if material.alpha_cutoff is None else material.alpha_cutoff,
+            "blended": material.blend,
+            "mesh_number": float(number),
+            "single_sided": not material.double_sided,
+        }
+        texture = self._white_texture()
+        if material.texture is not None:
+            cutoff = material.alpha_cutoff
+            # the texture's own alpha at which the material cuts
+            texture = self._texture(material.texture, None if cutoff is None else cutoff / max(material.alpha, 1e-6))
+        for name, value in values.items():
             if name in program.uniforms:  # a compiler may find that an edited shader does not need it
                 program.uniforms[name].value = value
-        texture = self._white_texture() if material.texture is None else self._texture(material.texture)
         texture.use(0)
 
     def _white_texture(self) -> moderngl.Texture:
@@ -96,30 +113,8 @@ class Geometry:
             self._white = context.get().texture((1, 1), 4, b"\xff" * 4)
         return self._white
 
-    def _texture(self, texture: Texture) -> moderngl.Texture:
-        if texture not in self._textures:
-            self._textures[texture] = _upload_texture(texture)
-        return self._textures[texture]
-
-
-def _upload_texture(texture: Texture) -> moderngl.Texture:
-    gl = context.get()
-    limit = gl.info["GL_MAX_TEXTURE_SIZE"]
-    pixels = texture.pixels
-    height, width = pixels.shape[:2]
-    if max(width, height) > limit:
-        scale = limit / max(width, height)
-        size = max(1, int(width * scale)), max(1, int(height * scale))
-        warnings.warn(
-            f"texture '{texture.name}' of {width}x{height} is over the driver's {limit}: drawn at {size[0]}x{size[1]}",
-            Notice,
-            stacklevel=2,
-        )
-        pixels = np.asarray(Image.fromarray(pixels).resize(size, Image.Resampling.BOX))
-        height, width = pixels.shape[:2]
-    flipped = np.ascontiguousarray(pixels[::-1])  # GL's first row is the bottom one
-    uploaded = gl.texture((width, height), 4, flipped.tobytes(), internal_format=GL_SRGB8_ALPHA8)
-    refuse_exhaustion(f"texture '{texture.name}' of {width}x{height}")
-    uploaded.build_mipmaps()
-    uploaded.filter = (moderngl.LINEAR_MIPMAP_LINEAR, moderngl.LINEAR)
-    return uploaded
+    def _texture(self, texture: Texture, cutoff: float | None) -> moderngl.Texture:
+        known = self._textures.setdefault(texture, {})
+        if cutoff not in known:
+            known[cutoff] = upload(texture, cutoff)
+        return known[cutoff]

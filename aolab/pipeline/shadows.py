@@ -11,7 +11,7 @@ from ..gl import context
 from ..gl.texture import make, refuse_exhaustion
 from ..maths.transforms import look_along, orthographic, perspective
 from ..modules.passes import GeometryPass
-from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
+from ..scene.lights import MAX_SHADOW_TILES, DirectionalLight, Light, PointLight, SpotLight
 from ..scene.scene import Scene
 from ..scene.view import Projection
 from .rasterizer import Rasterizer
@@ -20,7 +20,6 @@ _SHADOWS = GeometryPass("shadows", "pipeline/shadow.frag", {}, vertex="pipeline/
 
 # pixels a side of a tile, by the number of tiles that it is for. SSDO (2009) used 512
 TILE_SIZES = {4: 2048, 36: 1024, 256: 512}
-MAX_TILES = 256  # an atlas of 8192 pixels a side, 256 MB
 SLOPE_BIAS, CONSTANT_BIAS = 3.0, 4.0  # glPolygonOffset: the filter reaches 1.25 texels in x and in y
 
 # right-handed looks of a point light's six faces, in the order of `cubeFace` in glsl/lib/light.glsl
@@ -47,13 +46,16 @@ class ShadowMaps:
 
 
 def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.ndarray]]:
-    """(view_from_world, clip_from_view) of each tile that the light needs: one, or six for a point light."""
-    centre, radius = scene.bounds.mean(axis=0), scene.radius * 1.001
+    """(view_from_world, clip_from_view) of each tile that the light needs: one, or six for a point light.
+
+    The world is that of the shaders: the scene's centre is 0.
+    """
+    radius = scene.radius * 1.001
     if isinstance(light, DirectionalLight):
         direction = np.asarray(light.direction) / np.linalg.norm(light.direction)
-        return [(look_along(centre - direction * radius, direction), orthographic(radius, 2 * radius))]
-    position = np.asarray(light.position, float)
-    far = float(np.linalg.norm(position - centre)) + radius
+        return [(look_along(-direction * radius, direction), orthographic(radius, radius, 0, 2 * radius))]
+    position = np.asarray(light.position, float) - scene.centre
+    far = float(np.linalg.norm(position)) + radius
     near = far * 1e-3
     if isinstance(light, SpotLight):
         tan = float(np.tan(np.radians(light.outer + 1)))
@@ -70,11 +72,11 @@ def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
         first_tile.append(len(projections) if light.shadow else -1)
         projections += light_projections(light, scene) if light.shadow else []
     count = len(projections)
-    if count > MAX_TILES:
+    if count > MAX_SHADOW_TILES:
         points = sum(isinstance(light, PointLight) for light in scene.lights)
         raise SceneError(
             f"scene '{scene.name}': its {len(scene.lights)} lights ({points} of them points, six tiles each) need "
-            f"{count} shadow tiles; the limit is {MAX_TILES}. Set shadow=False on the lesser lights"
+            f"{count} shadow tiles; the limit is {MAX_SHADOW_TILES}. Set shadow=False on the lesser lights"
         )
     side = max(1, ceil(sqrt(count)))
     tile = next(size for most, size in TILE_SIZES.items() if count <= most) if count else 1

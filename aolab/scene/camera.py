@@ -1,22 +1,24 @@
-"""The camera: a pinhole, right-handed, y up; view space looks down -z."""
+"""The camera: a pinhole, or parallel rays; right-handed, y up; view space looks down -z."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ..errors import SceneError
-from ..maths.transforms import look_along, perspective
+from ..maths.transforms import look_along, orthographic, perspective
 
 Vec3 = tuple[float, float, float]
 
 
 @dataclass(frozen=True)
 class Camera:
-    """A perspective camera in world space.
+    """A camera in world space: a perspective one, or an orthographic one where `ortho` is given.
 
     `eye`, `target` and `up` are world-space points and a direction (scene units); `fov` is the vertical field of
     view in degrees, in (0, 180). `near` and `far` are clip distances in scene units; None takes them from the scene.
+    `ortho` is the height of the picture in scene units; then all rays are parallel, and `fov` has no effect.
+    `fit`: in a picture higher than wide, `fov` and `ortho` are those of its width, so that nothing is cut off.
     Raises `SceneError` for a camera that looks nowhere or holds non-finite numbers.
     """
 
@@ -26,6 +28,8 @@ class Camera:
     fov: float = 45.0
     near: float | None = None
     far: float | None = None
+    ortho: float | None = None
+    fit: bool = False
 
     def __post_init__(self) -> None:
         for name in ("eye", "target", "up"):
@@ -40,6 +44,8 @@ class Camera:
             raise SceneError(f"camera: eye and target are both {self.eye}; it looks nowhere")
         if np.linalg.norm(np.cross(forward, self.up)) <= 1e-9 * np.linalg.norm(forward) * np.linalg.norm(self.up):
             raise SceneError(f"camera: up = {self.up} is parallel to the view direction; choose another up")
+        if self.ortho is not None and not 0 < self.ortho < np.inf:
+            raise SceneError(f"camera: ortho = {self.ortho} is no finite height above 0")
         if self.near is not None and not 0 < self.near < np.inf:
             raise SceneError(f"camera: near = {self.near} must be finite and above 0")
         if self.far is not None and not (self.near or 0) < self.far < np.inf:
@@ -52,10 +58,26 @@ class Camera:
         matrix.flags.writeable = False
         return matrix
 
-    def tan_half_fov(self, size: tuple[int, int]) -> tuple[float, float]:
-        """Tangents of half the horizontal and vertical field of view for an image of (width, height) pixels."""
-        vertical = float(np.tan(np.radians(self.fov) / 2))
-        return vertical * size[0] / size[1], vertical
+    def half_extent(self, size: tuple[int, int]) -> tuple[float, float]:
+        """Half the width and height that a picture of (width, height) pixels shows, in scene units.
+
+        They are those at distance 1 from a perspective camera, and at every distance from an orthographic one.
+        """
+        width, height = size
+        half = float(np.tan(np.radians(self.fov) / 2)) if self.ortho is None else self.ortho / 2
+        pixels = self._side(size)
+        return half * width / pixels, half * height / pixels
+
+    def with_margin(self, size: tuple[int, int], larger: tuple[int, int]) -> "Camera":
+        """The camera whose picture of `larger` pixels holds this camera's picture of `size` in its middle."""
+        scale = self._side(larger) / self._side(size)
+        if self.ortho is not None:
+            return replace(self, ortho=self.ortho * scale)
+        return replace(self, fov=float(2 * np.degrees(np.arctan(np.tan(np.radians(self.fov) / 2) * scale))))
+
+    def _side(self, size: tuple[int, int]) -> int:
+        """The side of the picture, in pixels, that `fov` and `ortho` are measured along."""
+        return min(size) if self.fit else size[1]
 
     def clip_planes(self, bounds: np.ndarray) -> tuple[float, float]:
         """Near and far distances that hold `bounds` (2, 3), where the camera does not give its own."""
@@ -70,16 +92,18 @@ class Camera:
     def clip_from_view(self, size: tuple[int, int], bounds: np.ndarray) -> np.ndarray:
         """(4, 4) float64, OpenGL clip space."""
         near, far = self.clip_planes(bounds)
-        return perspective(*self.tan_half_fov(size), near, far)
+        project = perspective if self.ortho is None else orthographic
+        return project(*self.half_extent(size), near, far)
 
     @classmethod
     def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":
-        """A camera that sees all of `bounds` (2, 3), from `direction` as seen from their centre, in a square image."""
+        """A camera that sees all of `bounds` (2, 3) in a picture of any shape, from `direction` as seen from their
+        centre."""  # fmt: skip
         centre = bounds.mean(axis=0)
         towards = np.asarray(direction) / np.linalg.norm(direction)
-        probe = cls(eye=tuple(centre + towards), target=tuple(centre), fov=fov)
+        probe = cls(eye=tuple(towards), target=(0, 0, 0), fov=fov)
         corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T - centre
         x, y, z = probe.view_from_world[:3, :3] @ corners.T
         # each corner asks for a distance at which it falls inside the frame, 5 % away from its edge
         distance = float((z + np.maximum(np.abs(x), np.abs(y)) * 1.05 / np.tan(np.radians(fov) / 2)).max())
-        return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov)
+        return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov, fit=True)

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import Notice, SceneError
+from ..input import Budget
 from ..maths.harmonics import evaluate, irradiance, project
 from .camera import Vec3
 
@@ -104,17 +105,18 @@ class Environment:
         return cls(radiance, "sky")
 
     @classmethod
-    def load(cls, path: str | PathLike[str]) -> "Environment":
+    def load(cls, path: str | PathLike[str], memory: int | str | None = None) -> "Environment":
         """An equirectangular map: `.hdr` or `.exr` (linear), or an 8-bit picture (sRGB: no light brighter than 1).
 
-        Raises `FileError` for a file that is missing, unknown, corrupt or too large.
+        `memory`: how much decoding may take, as in "4GB"; None takes `AOLAB_MEMORY`, else 2 GB. Raises `FileError` for
+        a file that is missing, unknown, corrupt or too large.
         """
         from ..pictures.images import RADIANCE_SUFFIXES, linear_from_srgb, read_image, read_radiance
 
-        path = Path(path)
+        path, budget = Path(path), Budget(memory)
         if path.suffix.lower() in RADIANCE_SUFFIXES:
-            return cls(read_radiance(path), path.name)
-        return cls(linear_from_srgb(read_image(path, path.name)[..., :3]), path.name)
+            return cls(read_radiance(path, budget=budget), path.name)
+        return cls(linear_from_srgb(read_image(path, path.name, budget=budget)[..., :3]), path.name)
 
     @classmethod
     def light_probe(cls, path: str | PathLike[str]) -> "Environment":

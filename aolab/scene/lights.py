@@ -61,3 +61,9 @@ class SpotLight:
 
 
 Light = DirectionalLight | PointLight | SpotLight
+MAX_SHADOW_TILES = 256  # shadow maps of all lights: an atlas of 8192 pixels a side, 256 MB
+
+
+def shadow_tiles(light: Light) -> int:
+    """How many shadow maps the light needs, were it to cast a shadow: a point light looks along six axes."""
+    return 6 if isinstance(light, PointLight) else 1

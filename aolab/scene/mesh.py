@@ -3,35 +3,50 @@
 import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Literal, get_args
 
 import numpy as np
 
 from ..errors import Notice, SceneError
 from ..maths.local_maxima import local_maxima
-from ..maths.normals import smooth_normals
+from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
 
+Wrap = Literal["repeat", "mirror", "clamp"]
 CREASE_DEGREES = 40.0  # faces that meet at less than this share a normal; 30-60 is the usual range of modelling tools
 
 
 @dataclass(frozen=True, eq=False)
 class Texture:
-    """An image for a material: `pixels` (H, W, 4) uint8, sRGB colour and linear alpha, top row first."""
+    """An image for a material: `pixels` (H, W, 4) uint8, sRGB colour and linear alpha, top row first.
+
+    `wrap`: how the image goes on outside [0, 1], in u and in v. `nearest`: texels are not interpolated. `mipmaps`:
+    far away, averages of texels are drawn. Raises `SceneError` for another shape or wrap.
+    """
 
     pixels: np.ndarray
     name: str = ""
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
+    nearest: bool = False
+    mipmaps: bool = True
 
     def __post_init__(self) -> None:
         if self.pixels.ndim != 3 or self.pixels.shape[2] != 4 or self.pixels.dtype != np.uint8 or not self.pixels.size:
             raise SceneError(
                 f"texture '{self.name}': pixels are {self.pixels.shape} {self.pixels.dtype}, not (H, W, 4) uint8"
             )
+        if len(self.wrap) != 2 or not {*self.wrap} <= {*get_args(Wrap)}:
+            raise SceneError(f"texture '{self.name}': wrap = {self.wrap} is not two of {', '.join(get_args(Wrap))}")
 
 
 @dataclass(frozen=True, eq=False)
 class Material:
     """A diffuse surface: albedo = `base_color` (linear RGB, [0, 1]) × texture × vertex colour.
 
-    `alpha_cutoff`: fragments whose alpha is below it are not drawn; None draws all.
+    `alpha` in [0, 1] multiplies the texture's and the vertices' alpha. `alpha_cutoff`: points whose alpha is below are
+    not drawn; None draws all. `blend`: alpha is the share of the pixels, and of the rays, that meet the surface.
+    `double_sided`: False leaves out triangles seen from behind, where their corners run clockwise. `emission` is
+    radiance (linear RGB, from 0) that the surface sends besides, times `emission_texture`.
+    Raises `SceneError` for a value out of range.
     """
 
     base_color: tuple[float, float, float] = (0.8, 0.8, 0.8)
@@ -39,11 +54,21 @@ class Material:
     alpha: float = 1.0
     alpha_cutoff: float | None = None
     name: str = ""
+    blend: bool = False
+    double_sided: bool = True
+    emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    emission_texture: Texture | None = None
 
     def __post_init__(self) -> None:
+        what = f"material '{self.name}'"
         color = np.asarray(self.base_color, float)
         if color.shape != (3,) or not np.isfinite(color).all() or (color < 0).any() or (color > 1).any():
-            raise SceneError(f"material '{self.name}': base_color = {self.base_color} is not three numbers in [0, 1]")
+            raise SceneError(f"{what}: base_color = {self.base_color} is not three numbers in [0, 1]")
+        emission = np.asarray(self.emission, float)
+        if emission.shape != (3,) or not np.isfinite(emission).all() or (emission < 0).any():
+            raise SceneError(f"{what}: emission = {self.emission} is not three finite numbers from 0")
+        if not 0 <= self.alpha <= 1:
+            raise SceneError(f"{what}: alpha = {self.alpha} is outside [0, 1]")
 
 
 def _array(value: object, columns: tuple[int, ...], dtype: type, what: str) -> np.ndarray:
@@ -61,7 +86,8 @@ class Mesh:
 
     `vertices` (V, 3) float32; `faces` (F, 3) uint32; `normals` (V, 3), made from the faces when None, smooth up to
     `crease` degrees (which splits vertices along the creases); `uv` (V, 2), v up; `colors` (V, 4) linear RGBA float32.
-    Degenerate triangles are dropped, counted, and reported as a `Notice`.
+    Degenerate triangles are dropped, and normals that cannot shade are made anew: each is counted in a `Notice`.
+    A `Notice` warns of vertices so far from the origin that float32 moves them.
     Raises `SceneError` for an empty mesh, non-finite numbers (mesh and index named), indices out of range.
     """
 
@@ -81,6 +107,7 @@ class Mesh:
             raise SceneError(f"{what} is empty: {len(self.vertices)} vertices, {len(faces)} triangles")
         vertices = _array(self.vertices, (3,), np.float32, f"{what}: vertices")
         self._refuse_nonfinite(vertices, f"{what}: vertex")
+        self._warn_of_rounding(vertices, what)
         if faces.ndim != 2 or faces.shape[1] != 3:
             raise SceneError(f"{what}: faces have shape {faces.shape}, not (n, 3)")
         wrong = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))
@@ -99,11 +126,14 @@ class Mesh:
             if len(array) != len(vertices):
                 raise SceneError(f"{what}: {len(array)} {key} for {len(vertices)} vertices")
             self._refuse_nonfinite(array, f"{what}: {key} of vertex")
-        if self.material.texture is not None and attributes["uv"] is None:
+        material = self.material
+        if (material.texture is not None or material.emission_texture is not None) and attributes["uv"] is None:
             warnings.warn(f"{what}: a texture but no uv; drawn in its base colour", Notice, stacklevel=3)
-            object.__setattr__(self, "material", replace(self.material, texture=None))
-        if attributes["normals"] is None or not (np.abs(attributes["normals"]).max(axis=1) > 0).all():
-            vertices, faces, source, attributes["normals"] = smooth_normals(vertices, faces, self.crease)
+            object.__setattr__(self, "material", replace(material, texture=None, emission_texture=None))
+        vertices, faces, source, attributes["normals"] = self._with_normals(
+            vertices, faces, attributes["normals"], what
+        )
+        if source is not None:
             for key in ("uv", "colors"):
                 array = attributes[key]
                 attributes[key] = None if array is None else array[source]
@@ -112,6 +142,30 @@ class Mesh:
                 array = np.ascontiguousarray(array)
                 array.flags.writeable = False
             object.__setattr__(self, key, array)
+
+    def _with_normals(
+        self, vertices: np.ndarray, faces: np.ndarray, normals: np.ndarray | None, what: str
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray | None, np.ndarray]:
+        """Vertices, faces and normals, and the source of each vertex where vertices were split, else None."""
+        count = len(vertices)
+        if normals is not None and not np.abs(normals).max() > NO_LENGTH:
+            warnings.warn(f"{what}: its {count} normals have no length; made from the faces", Notice, stacklevel=4)
+            normals = None
+        if normals is None:
+            return smooth_normals(vertices, faces, self.crease)
+        vertices, faces, source, normals, made, flat = usable_normals(vertices, faces, normals)
+        if made:
+            text = f"{what}: {made} of {count} normals have no length; made from the faces"
+            warnings.warn(text, Notice, stacklevel=4)
+        if flat:
+            text = f"{what}: the normals of {flat} of {len(faces)} triangles lie in the triangle's plane; made from it"
+            warnings.warn(text, Notice, stacklevel=4)
+        return vertices, faces, source if flat else None, normals
+
+    @cached_property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) float64: the least and greatest local coordinates."""
+        return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)], np.float64)
 
     @cached_property
     def welded(self) -> tuple[np.ndarray, np.ndarray]:
@@ -129,8 +183,14 @@ class Mesh:
         return bool((uses % 2 == 0).all())
 
     @cached_property
+    def is_solid(self) -> bool:
+        """Whether the mesh is closed, with the fronts of its triangles outside: its corners run counterclockwise."""
+        a, b, c = np.moveaxis(self.vertices.astype(np.float64)[self.faces] - self.bounds.mean(axis=0), 1, 0)
+        return float((np.cross(a, b) * c).sum()) > 0 and self.is_closed
+
+    @cached_property
     def local_maxima(self) -> tuple[np.ndarray, np.ndarray]:
-        """Points (n, 3) of local space, higher than their neighbours along one of `features.AXES`, and which one."""
+        """Points (n, 3) of local space, higher than their neighbours along one of `local_maxima.AXES`, and which."""
         return local_maxima(*self.welded)
 
     @staticmethod
@@ -139,6 +199,19 @@ class Mesh:
         if len(wrong):
             raise SceneError(
                 f"{what} {wrong[0]} is {array[wrong[0]].tolist()}; {len(wrong)} of {len(array)} are not finite"
+            )
+
+    def _warn_of_rounding(self, vertices: np.ndarray, what: str) -> None:
+        given = np.asarray(self.vertices)
+        if given.dtype != np.float64:
+            return
+        moved, extent = np.abs(vertices - given).max(), np.ptp(vertices, axis=0).max()
+        if moved > 1e-4 * extent:
+            warnings.warn(
+                f"{what}: float32 moves its vertices by up to {moved:.2g} units, so far are they from the origin; "
+                "subtract their centre, and give it to the Instance as a translation",
+                Notice,
+                stacklevel=4,
             )
 
     @staticmethod

@@ -1,18 +1,22 @@
 """A scene: meshes placed in the world, lights, an environment, a camera. Immutable, so that GPU copies can be kept."""
 
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import Notice, SceneError
 from ..maths.local_maxima import AXES, mean_nearest_distance
 from .camera import Camera
 from .environment import Environment
 from .lights import DirectionalLight, Light
 from .mesh import Mesh
 
+SAMPLED = 1000  # vertices of an instance that decide what is framed
+OUTLYING = 1.0  # per cent of the vertices at either end of an axis that may be left out of the frame
+FAR_OUT = 20.0  # times larger is a scene with them than without: a model on a wide floor is not meant
 MAX_EXTENT = 1e15  # scene units; its square still fits float32, which the shaders compute with
 
 
@@ -28,7 +32,7 @@ class Instance:
         matrix = np.array(self.world_from_local, np.float64)
         what = f"instance '{self.name or self.mesh.name}'"
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
-            raise SceneError(f"{what}: its transform is not a finite 4×4 matrix:\n{matrix}")
+            raise SceneError(f"{what}: its transform is not a finite 4×4 matrix: {matrix.tolist()!s:.200}")
         if not np.allclose(matrix[3], (0, 0, 0, 1)):
             raise SceneError(f"{what}: its transform's last row is {matrix[3].tolist()}, not affine")
         singular = np.linalg.svd(matrix[:3, :3], compute_uv=False)
@@ -36,6 +40,17 @@ class Instance:
             raise SceneError(f"{what}: its transform is singular (scales {singular.tolist()}); nothing would be left")
         matrix.flags.writeable = False
         object.__setattr__(self, "world_from_local", matrix)
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """(2, 3) float64: the least and greatest world coordinates."""
+        axes_stay = (np.count_nonzero(self.world_from_local[:3, :3], axis=1) == 1).all()
+        world = self.placed(self.mesh.bounds if axes_stay else self.mesh.vertices)
+        return np.array([world.min(axis=0), world.max(axis=0)])
+
+    def placed(self, points: np.ndarray) -> np.ndarray:
+        """Points (n, 3) of local space in world space, float64."""
+        return points.astype(np.float64) @ self.world_from_local[:3, :3].T + self.world_from_local[:3, 3]
 
 
 def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
@@ -82,13 +97,13 @@ class Scene:
             raise SceneError(
                 f"scene '{self.name}' reaches {extent:.3g} units from the origin; the limit is {MAX_EXTENT:g}"
             )
-        if not self.radius > 1e-12 or not self.radius > 1e-6 * extent:
+        if not self.radius > 1e-12 or not self.radius > 1e-9 * extent:
             raise SceneError(
                 f"scene '{self.name}' has radius {self.radius:.3g} at {extent:.3g} from the origin: too small for "
-                "float32; scale it or move it to the origin"
+                "its coordinates; scale it or move it to the origin"
             )
         if self.camera is None:
-            object.__setattr__(self, "camera", Camera.framing(self.bounds))
+            object.__setattr__(self, "camera", Camera.framing(self._bounds_to_frame()))
 
     def _checked_lights(self) -> tuple[Light, ...]:
         lights = tuple(self.lights) if isinstance(self.lights, Iterable) else None
@@ -102,13 +117,35 @@ class Scene:
     @cached_property
     def bounds(self) -> np.ndarray:
         """(2, 3) float64: the least and greatest world coordinates."""
-        lows, highs = [], []
-        for instance in self.instances:
-            matrix = instance.world_from_local
-            world = instance.mesh.vertices.astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
-            lows.append(world.min(axis=0))
-            highs.append(world.max(axis=0))
-        return np.array([np.min(lows, axis=0), np.max(highs, axis=0)])
+        bounds = np.array([instance.bounds for instance in self.instances])
+        return np.array([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
+
+    def _bounds_to_frame(self) -> np.ndarray:
+        """The bounds, unless a few vertices lie far outside of all the others: then those of the others."""
+        sample = np.concatenate([
+            instance.placed(instance.mesh.vertices[:: 1 + len(instance.mesh.vertices) // SAMPLED])
+            for instance in self.instances
+        ])  # fmt: skip
+        inner = np.percentile(sample, (OUTLYING, 100 - OUTLYING), axis=0)
+        if not np.linalg.norm(np.ptp(self.bounds, axis=0)) > FAR_OUT * np.linalg.norm(np.ptp(inner, axis=0)):
+            return self.bounds
+        margin = 0.1 * np.ptp(inner, axis=0)  # of the extent: the outermost vertices are within
+        inner = np.clip(inner + np.outer((-1, 1), margin), *self.bounds)
+        if not np.linalg.norm(np.ptp(inner, axis=0)) > 0:
+            return self.bounds
+        size = "{:.3g} × {:.3g} × {:.3g}"
+        warnings.warn(
+            f"scene '{self.name}': nearly all of its vertices lie within {size.format(*np.ptp(inner, axis=0))} of its "
+            f"{size.format(*np.ptp(self.bounds, axis=0))} units; the camera frames those",
+            Notice,
+            stacklevel=4,
+        )
+        return inner
+
+    @property
+    def centre(self) -> np.ndarray:
+        """(3,) float64: the middle of the bounds, world space. Shaders compute with it as their origin."""
+        return self.bounds.mean(axis=0)
 
     @property
     def radius(self) -> float:
@@ -126,7 +163,7 @@ class Scene:
         points, axes = [], []
         for instance in self.instances:
             local, axis = instance.mesh.local_maxima
-            points.append(local @ instance.world_from_local[:3, :3].T + instance.world_from_local[:3, 3])
+            points.append(instance.placed(local))
             axes.append(axis)
         world, along = np.concatenate(points), np.concatenate(axes)
         distances = [mean_nearest_distance(world[along == axis]) for axis in range(len(AXES))]
@@ -137,9 +174,7 @@ class Scene:
         """(triangles, 3, 3) float64: every triangle's corners in world space, in the order of the instances."""
         parts = []
         for instance in self.instances:
-            matrix = instance.world_from_local
-            corners = instance.mesh.vertices.astype(np.float64)[instance.mesh.faces]
-            parts.append(corners @ matrix[:3, :3].T + matrix[:3, 3])
+            parts.append(instance.placed(instance.mesh.vertices)[instance.mesh.faces])
         return np.concatenate(parts)
 
     def replace(self, **changes: object) -> "Scene":

@@ -17,10 +17,17 @@ def matrix_bytes(matrix: np.ndarray) -> bytes:
     return np.ascontiguousarray(matrix.T, np.float32).tobytes()
 
 
+def moved(offset: np.ndarray) -> np.ndarray:
+    """(4, 4) float64: the translation by `offset` (3,)."""
+    matrix = np.eye(4)
+    matrix[:3, 3] = offset
+    return matrix
+
+
 def ray_scale_offset(camera: Camera, size: Size) -> tuple[float, float, float, float]:
     """scale.xy, offset.xy of ray.xy = pixel · scale + offset, for the view-space ray (ray.xy, -1) through a pixel."""
-    tan_x, tan_y = camera.tan_half_fov(size)
-    return 2 * tan_x / size[0], 2 * tan_y / size[1], -tan_x, -tan_y
+    half_x, half_y = camera.half_extent(size)
+    return 2 * half_x / size[0], 2 * half_y / size[1], -half_x, -half_y
 
 
 @dataclass(frozen=True)
@@ -47,12 +54,20 @@ class View:
         """The pixels of the texture that this view covers."""
         return *self.origin, *self.size
 
+    @property
+    def view_from_shader(self) -> np.ndarray:
+        """(4, 4) float64: to view space from the world of the shaders, in which the scene's centre is 0.
+
+        float32 is finest there. A house at map coordinates, 4e6 units from the origin, would have steps of 0.5 units.
+        """
+        return self.camera.view_from_world @ moved(self.bounds.mean(axis=0))
+
     @cached_property
     def uniforms(self) -> dict[str, object]:
         """Uniform values by name; see glsl/lib/space.glsl."""
         scale_x, scale_y, left, bottom = ray_scale_offset(self.camera, self.size)
         offset_x, offset_y = left - self.origin[0] * scale_x, bottom - self.origin[1] * scale_y
-        view_from_world = self.camera.view_from_world
+        view_from_world = self.view_from_shader
         return {
             "ray_from_pixel": (scale_x, scale_y, offset_x, offset_y),
             "pixel_from_ray": (1 / scale_x, 1 / scale_y, -offset_x / scale_x, -offset_y / scale_y),

@@ -19,6 +19,7 @@ _EXTRAS = {
     ),
     "mitsuba": ("mitsuba", "a path tracer as second opinion", "pip install mitsuba"),
     "tune": ("optuna", "fitting parameters", "pip install optuna"),
+    "draco": ("DracoPy", "glTF files that Draco compressed", "pip install DracoPy"),
     "notebook": ("anywidget", "picking pixels in a notebook", "pip install anywidget"),
     "pyrender": ("pyrender", "pyrender scenes as input", "pip install scikit-robot-pyrender"),
     "jupyter": ("IPython", "frames that show themselves in notebooks", "pip install jupyterlab"),

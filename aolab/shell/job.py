@@ -119,6 +119,8 @@ class Job:
         camera = self.camera or scene.camera
         assert camera is not None  # Scene frames itself
         changes = {key: getattr(self, key) for key in ("eye", "target", "fov") if getattr(self, key) is not None}
+        if self.fov is not None:
+            changes["fit"] = False  # --fov is vertical in a picture of any shape
         return replace(camera, **changes)
 
 

@@ -8,7 +8,7 @@ import warnings
 import zipfile
 from collections.abc import Iterator
 from contextlib import suppress
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
@@ -94,10 +94,11 @@ def _scene_parts(scene: Scene) -> Iterator[Any]:
             if array is not None:
                 yield array
         material = mesh.material
-        yield repr((material.base_color, material.alpha, material.alpha_cutoff)).encode()
-        if material.texture is not None:
-            yield repr(material.texture.pixels.shape).encode()
-            yield material.texture.pixels
+        yield repr(replace(material, texture=None, emission_texture=None)).encode()
+        for texture in (material.texture, material.emission_texture):
+            if texture is not None:
+                yield repr((texture.pixels.shape, texture.wrap, texture.nearest)).encode()
+                yield texture.pixels
     for instance in scene.instances:
         yield repr(numbers[instance.mesh]).encode()
         yield instance.world_from_local

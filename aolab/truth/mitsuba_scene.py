@@ -74,7 +74,7 @@ def _camera(view: View, bounds: np.ndarray, centre: np.ndarray, scale: float) ->
         "origin": ((np.asarray(camera.eye) - centre) * scale).tolist(),
         "target": ((np.asarray(camera.target) - centre) * scale).tolist(),
         "up": camera.up,
-        "fov": camera.fov,
+        "fov": 2 * np.degrees(np.arctan(camera.half_extent(view.size)[1])).item(),
         "near_clip": near * scale,
         "far_clip": far * scale,
     }

@@ -46,8 +46,8 @@ class Surface:
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre
         self._near = view.camera.clip_planes(scene.bounds)[0]
-        # what the rasteriser's float32 transform may add, far from the origin
-        extent = np.abs(scene.bounds).max() + np.linalg.norm(self._world_from_view[:3, 3])
+        # the rounding of the rasteriser's float32 transform, in the world whose origin is the scene's centre
+        extent = np.abs(scene.bounds - world.centre).max() + np.linalg.norm(self._eye)
         self._rounding = 8 * EPSILON * float(extent)
 
     def __len__(self) -> int:
@@ -68,7 +68,7 @@ class Surface:
         geometric *= -np.sign((geometric * directions).sum(axis=1, keepdims=True))
         height = ((positions - self._world.corners[triangle, 0]) * geometric).sum(axis=1)
 
-        pixel_width = depth * 2 * self._view.camera.tan_half_fov(self._view.size)[1] / self._view.size[1]
+        pixel_width = depth * 2 * self._view.camera.half_extent(self._view.size)[1] / self._view.size[1]
         facing = (shading * geometric).sum(axis=1) > 0
         same = (triangle >= 0) & (np.abs(height) <= pixel_width / SAME_PLANE + self._rounding) & facing
         geometric = np.where(same[:, None], geometric, shading)

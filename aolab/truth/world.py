@@ -40,20 +40,29 @@ class World:
         return self.first_hit(origins, directions, limit).triangle >= 0
 
     def first_hit(self, origins: np.ndarray, directions: np.ndarray, limit: np.ndarray | float) -> Hits:
-        """The nearest surface along each ray; a hole in a cut-out texture is none."""
+        """The nearest surface along each ray; a hole in a cut-out texture is none, nor is the back of a surface that
+        has only a front."""  # fmt: skip
         hits = self._caster.first_hit(origins, directions, limit)
         if not self._surface.has_holes:
             return hits
         limits = np.broadcast_to(np.asarray(limit, np.float32), len(origins))
-        rays = self._surface.in_hole(hits)
+        rays = self._holes(hits, directions)
         while len(rays):
             passed = hits.distance[rays] + np.float32(self.lift)
             start = origins[rays] + directions[rays] * passed[:, None]
             further = self._caster.first_hit(start, directions[rays], np.maximum(limits[rays] - passed, 0))
             for known, new in zip(hits, (further.distance + passed, *further[1:]), strict=True):
                 known[rays] = new
-            rays = rays[self._surface.in_hole(further)]
+            rays = rays[self._holes(further, directions[rays])]
         return hits
+
+    def _holes(self, hits: Hits, directions: np.ndarray) -> np.ndarray:
+        """Indices of the hits where a ray meets nothing: a hole, or the back of a surface that has none."""
+        hole = self._surface.in_hole(hits)
+        one_sided = self._surface.front[hits.triangle.clip(0)]
+        from_behind = (self.normals[hits.triangle.clip(0)] * directions).sum(axis=1) * one_sided > 0
+        hole[from_behind & (hits.triangle >= 0)] = True
+        return np.flatnonzero(hole)
 
     def albedo(self, triangle: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """(n, 3) float32, linear: the diffuse albedo at points of triangles."""
@@ -96,7 +105,10 @@ class _Surfaces:
             ])  # fmt: skip
         cutoffs = [-1.0 if m.material.alpha_cutoff is None else m.material.alpha_cutoff for m in meshes]
         self._cutoff = np.repeat(np.array(cutoffs, np.float32), counts)
-        self.has_holes = max(cutoffs) > 0
+        self._blend = np.repeat([mesh.material.blend for mesh in meshes], counts)
+        fronts = [_front(instance) for instance in instances]
+        self.front = np.repeat(np.array(fronts, np.float32), counts)  # (t,): see `_front`
+        self.has_holes = max(cutoffs) > 0 or bool(self._blend.any()) or any(fronts)
 
     @cached_property
     def _linear(self) -> list[np.ndarray]:
@@ -116,15 +128,46 @@ class _Surfaces:
             for i in np.unique(which[which >= 0]):
                 here = np.flatnonzero(which == i)
                 uv = (self._uv[triangle[here]] * weights[here]).sum(axis=1)
-                color[here] *= bilinear(self._linear[i], uv[:, 0], 1 - uv[:, 1], repeat_rows=True)
+                u, v = _wrapped(self._textures[i], uv[:, 0], 1 - uv[:, 1])
+                color[here] *= bilinear(self._linear[i], u, v, repeat_rows=True)
         return color
 
     def in_hole(self, hits: Hits) -> np.ndarray:
-        """Indices of the hits where the surface is cut out."""
+        """(n,) bool: the hits where the surface is cut out.
+
+        A blended surface is one of as many rays as its alpha states; where it is hit decides which.
+        """
+        hole = np.zeros(len(hits.triangle), bool)
         hit = np.flatnonzero(hits.triangle >= 0)
-        hit = hit[self._cutoff[hits.triangle[hit]] > 0]
-        triangle = hits.triangle[hit]
-        return hit[self.rgba(triangle, hits.u[hit], hits.v[hit])[:, 3] < self._cutoff[triangle]]
+        hit = hit[(self._cutoff[hits.triangle[hit]] > 0) | self._blend[hits.triangle[hit]]]
+        triangle, u, v = hits.triangle[hit], hits.u[hit], hits.v[hit]
+        even = (triangle * 0.754877666 + u * 12.9898e3 + v * 78.233e3) % 1  # as good as random in [0, 1)
+        threshold = np.where(self._blend[triangle], even, self._cutoff[triangle])
+        hole[hit] = self.rgba(triangle, u, v)[:, 3] < threshold
+        return hole
+
+
+def _front(instance: Instance) -> float:
+    """0 for a surface with two sides, else the side of the triangles' world-space winding that is the front: 1 or -1.
+
+    A closed mesh with its fronts outside counts as two-sided: no ray from outside meets a back first.
+    """
+    if instance.mesh.material.double_sided or instance.mesh.is_solid:
+        return 0.0
+    return float(np.sign(np.linalg.det(instance.world_from_local[:3, :3])))
+
+
+def _wrapped(texture: Texture, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Coordinates (v downwards) at which the repeated texture, between texels, shows what `texture` shows at u, v."""
+    height, width = texture.pixels.shape[:2]
+    found = []
+    for at, count, wrap in ((u, width, texture.wrap[0]), (v, height, texture.wrap[1])):
+        if wrap == "mirror":
+            at = np.abs((at + 1) % 2 - 1)
+        if texture.nearest:
+            at = (np.floor(at * count) + 0.5) / count
+        found.append(at if wrap == "repeat" else at.clip(0.5 / count, 1 - 0.5 / count))
+    return found[0], found[1]
 
 
 def bilinear(image: np.ndarray, u: np.ndarray, v: np.ndarray, repeat_rows: bool) -> np.ndarray:

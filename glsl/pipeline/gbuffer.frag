@@ -5,23 +5,24 @@
 
 const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
 
-uniform sampler2D base_texture;
+#include "lib/base_color.glsl"
+
 uniform sampler2D nearerZ;
-uniform vec4 base_color;
-uniform float alpha_cutoff;
 
 in vec3 viewPos;
 in vec3 viewNormal;
 in vec2 uv;
 in vec4 color;
+flat in float winding;
 
 out float surfaceViewZ;
 out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
 
 void main() {
-    vec4 base = base_color * color * texture(base_texture, uv);
-    if (base.a < alpha_cutoff) discard;
+    vec4 base = baseColor(uv, color);
+    // peeling needs the backs of solids, be they single-sided
+    if (isHole(base.a, uv, peel ? 0.0 : winding)) discard;
     if (peel && viewPos.z >= texelFetch(nearerZ, ivec2(gl_FragCoord.xy), 0).r) discard;
     // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
     // derivatives, which at a horizon reach over to what lies behind the eye

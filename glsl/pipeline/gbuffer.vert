@@ -14,6 +14,7 @@ out vec3 viewPos;
 out vec3 viewNormal;
 out vec2 uv;
 out vec4 color;
+flat out float winding;
 
 void main() {
     vec4 position = view_from_world * (world_from_local * vec4(local_position, 1.0));
@@ -25,5 +26,6 @@ void main() {
     viewNormal = mat3(view_from_world) * normalize(cofactor * local_normal);
     uv = texture_uv;
     color = vertex_color;
+    winding = sign(determinant(linear));
     gl_Position = clip_from_view * position;
 }

@@ -9,9 +9,11 @@ uniform mat4 clip_from_world;
 
 out vec2 uv;
 out float alpha;
+flat out float winding;
 
 void main() {
     uv = texture_uv;
     alpha = vertex_color.a;
+    winding = sign(determinant(mat3(world_from_local)));
     gl_Position = clip_from_world * (world_from_local * vec4(local_position, 1.0));
 }

@@ -3,13 +3,15 @@
 import base64
 import math
 import os
+import re
+import sys
 
 import numpy as np
 import pytest
 from gltf_file import GltfFile, png, png_header
 
 import aolab
-from aolab.errors import FileError, Notice, SceneError
+from aolab.errors import FileError, Notice, ParameterError, SceneError
 from aolab.scene.lights import DirectionalLight, PointLight, SpotLight
 
 HALF_TURN_Z = [0, 0, 1, 0]
@@ -91,11 +93,11 @@ def test_mask_has_gltfs_default_cutoff(gltf):
     assert aolab.load(gltf.glb()).instances[0].mesh.material.alpha_cutoff == 0.5
 
 
-def test_blend_becomes_a_mask_and_says_so(gltf):
+def test_blending_is_a_share_of_the_pixels_and_told(gltf):
     gltf.material(alphaMode="BLEND")
-    with pytest.warns(Notice, match=r"'paint' is blended; drawn as a mask, cut at alpha 0\.5"):
-        scene = aolab.load(gltf.glb())
-    assert scene.instances[0].mesh.material.alpha_cutoff == 0.5
+    with pytest.warns(Notice, match=r"material 'paint' is blended: drawn in as many of the pixels as its alpha states"):
+        material = aolab.load(gltf.glb()).instances[0].mesh.material
+    assert (material.alpha_cutoff, material.blend) == (None, True)
 
 
 @pytest.mark.parametrize("where", ["bufferView", "file", "percent", "data"])
@@ -163,10 +165,26 @@ def test_camera_of_a_scaled_node(gltf):
     assert [instance.name for instance in scene.instances] == ["first", "on the camera"]
 
 
-def test_an_orthographic_camera_is_replaced_and_said(gltf):
-    gltf.header["cameras"] = [{"type": "orthographic", "orthographic": {}}]
+def test_an_orthographic_camera(gltf):
+    magnified = {"xmag": 3, "ymag": 2, "znear": 0, "zfar": 100}
+    gltf.header["cameras"] = [{"type": "orthographic", "orthographic": magnified}]
+    gltf.header["nodes"].append({"camera": 0, "translation": [0, 0, 5]})
+    gltf.header["scenes"] = [{"nodes": [0, 1]}]
+    camera = aolab.load(gltf.glb()).camera
+    assert (camera.ortho, camera.near, camera.far, camera.eye) == (4, None, 100, (0, 0, 5))
+
+
+def test_the_clip_planes_of_a_file_are_kept(gltf):
+    gltf.header["cameras"] = [{"type": "perspective", "perspective": {"yfov": 1, "znear": 0.02, "zfar": 300}}]
     gltf.header["nodes"][0]["camera"] = 0
-    with pytest.warns(Notice, match="orthographic"):
+    camera = aolab.load(gltf.glb()).camera
+    assert (camera.near, camera.far) == (0.02, 300)
+
+
+def test_a_camera_that_sees_nothing_is_told_and_the_scene_framed(gltf):
+    gltf.header["cameras"] = [{"name": "blind", "type": "perspective", "perspective": {"yfov": 0, "znear": 0.1}}]
+    gltf.header["nodes"][0]["camera"] = 0
+    with pytest.warns(Notice, match=r"camera 'blind' cannot be used: fov = 0\.0 is outside"):
         scene = aolab.load(gltf.glb())
     np.testing.assert_allclose(scene.camera.target, (0.5, 0.5, 0))
 
@@ -209,15 +227,9 @@ def test_lines_beside_triangles_are_left_out_with_a_notice(gltf):
     gltf.header["meshes"].append({"primitives": [{**gltf.header["meshes"][0]["primitives"][0], "mode": 1}]})
     gltf.header["nodes"][0]["children"] = [1]
     gltf.header["nodes"] += [{"mesh": 1, "children": [2]}, {"mesh": 0, "name": "below the lines"}]
-    with pytest.warns(Notice, match="left out 1 of 2 primitives"):
+    with pytest.warns(Notice, match="left out: mesh 'mesh 1' holds lines, no triangles"):
         scene = aolab.load(gltf.glb())
     assert [instance.name for instance in scene.instances] == ["first", "below the lines"]
-
-
-def test_skins_are_said(gltf):
-    gltf.header["skins"] = [{"joints": [0]}]
-    with pytest.warns(Notice, match="rest pose"):
-        aolab.load(gltf.glb())
 
 
 def refuse(path, match, error=FileError):
@@ -229,7 +241,7 @@ def refuse(path, match, error=FileError):
 
 def test_points_alone_are_refused(gltf):
     gltf.header["meshes"][0]["primitives"][0]["mode"] = 0
-    refuse(gltf.glb(), "points, lines or triangle fans, not triangles", SceneError)
+    refuse(gltf.glb(), "nothing can be drawn: mesh 'triangle' holds points, no triangles", SceneError)
 
 
 def test_a_scene_without_meshes_is_refused(gltf):
@@ -260,44 +272,73 @@ def test_broken_json(gltf):
     path.write_text("{" + path.read_text())
     refuse(path, "JSON cannot be parsed")
     path.write_text("[1, 2]")
-    refuse(path, "its JSON is a list")
+    refuse(path, "is not glTF: its JSON is no object")
 
 
 def test_a_required_extension_that_is_not_read(gltf):
-    gltf.header["extensionsRequired"] = ["KHR_draco_mesh_compression", "KHR_materials_unlit"]
-    refuse(gltf.glb(), "requires KHR_draco_mesh_compression, which is not read")
+    gltf.header["extensionsRequired"] = ["EXT_meshopt_compression", "KHR_materials_unlit"]
+    refuse(gltf.glb(), "requires EXT_meshopt_compression, which is not read")
 
 
 @pytest.mark.parametrize(
     ("change", "match"),
     [
-        (lambda file: file.header["accessors"][0].update(bufferView=7), "IndexError"),
-        (lambda file: file.header["accessors"][0].update(count=4), "cannot read .* as glTF"),
-        (lambda file: file.header["accessors"][0].update(sparse={}), "accessor 0 is sparse"),
-        (lambda file: file.header["accessors"][0].pop("bufferView"), "accessor 0 has no data"),
-        (lambda file: file.header["bufferViews"][0].update(byteLength=4000), "bufferView 0 is bytes 0 to 4000"),
-        (lambda file: file.header["nodes"][0].update(mesh=3), "cannot read .* as glTF: IndexError"),
-        (lambda file: file.header["nodes"][0].update(children=[9]), "refers to node 9, but has 1 nodes"),
-        (lambda file: file.header["nodes"][0].update(children=[0]), "'first' is reached twice"),
-        (lambda file: file.header["nodes"][0].update(matrix=[1, 2]), "cannot read .* as glTF"),
-        (lambda file: file.header["meshes"][0].pop("primitives"), "as glTF: KeyError: 'primitives'"),
+        (lambda file: file["accessors"][0].update(bufferView=7), r"accessors[0].bufferView: index 7 of 1 bufferViews"),
+        (lambda file: file["accessors"][0].update(type="VEC9"), 'accessors[0].type: "VEC9" is none of'),
+        (lambda file: file["accessors"][0].pop("type"), "accessors[0].type is missing"),
+        (lambda file: file["accessors"][0].update(count=-1), "accessors[0].count: -1 is below 0"),
+        (lambda file: file["accessors"][0].update(count="many"), 'accessors[0].count: "many" is no whole number'),
+        (lambda file: file["accessors"][0].update(sparse={}), "accessors[0].sparse.count is missing"),
+        (lambda file: file["nodes"][0].update(mesh=3), "nodes[0].mesh: index 3 of 1 meshes"),
+        (lambda file: file["nodes"][0].update(children=[9]), "nodes[0].children[0]: index 9 of 1 nodes"),
+        (lambda file: file["nodes"][0].update(matrix=[1, 2]), "nodes[0].matrix holds 2 numbers, not 16"),
+        (lambda file: file["nodes"][0].update(scale=[math.inf] * 3), "nodes[0].scale[0]: Infinity is not finite"),
+        (lambda file: file["nodes"][0].update(rotation="up"), 'nodes[0].rotation: "up" is no list'),
+        (lambda file: file["meshes"][0].pop("primitives"), "meshes[0].primitives is missing"),
+        (lambda file: file["meshes"][0]["primitives"][0].update(mode=7), "meshes[0].primitives[0].mode: 7 is above 6"),
+        (
+            lambda file: file["meshes"][0]["primitives"][0]["attributes"].update(POSITION=9),
+            "meshes[0].primitives[0].attributes.POSITION: index 9 of 1 accessors",
+        ),
+        (lambda file: file.update(materials=[{"alphaMode": "GLASS"}]), 'materials[0].alphaMode: "GLASS" is none of'),
+        (lambda file: file.update(materials=3), "materials: 3 is no list"),
+    ],
+)  # fmt: skip
+def test_the_schema_is_checked_and_the_place_named(gltf, change, match):
+    change(gltf.header)
+    refuse(gltf.glb(), re.escape(f"is no valid glTF: {match}"))
+
+
+@pytest.mark.parametrize(
+    ("change", "match"),
+    [
+        (lambda file: file["accessors"][0].update(count=4), r"accessors\[0\]: its 4 elements end at byte 48 of .* 36"),
+        (lambda file: file["bufferViews"][0].update(byteLength=4000), r"bufferViews\[0\]: bytes 0 to 4000 of buffers"),
+        (lambda file: file["accessors"][0].update(type="VEC2"), r"accessors\[0\].type: VEC2 is not VEC3 here"),
+        (lambda file: file["nodes"][0].update(children=[0]), "nodes are their own ancestors: nodes must form a tree"),
+        (lambda file: file["nodes"].extend([{"children": [0]}] * 2), "'first' is reached twice"),
     ],
 )
 def test_corrupt_structure(gltf, change, match):
-    change(gltf)
+    change(gltf.header)
     refuse(gltf.glb(), match)
+
+
+def test_properties_that_are_null_count_as_absent(gltf):
+    gltf.header["nodes"][0].update(skin=None, camera=None, name=None)
+    assert aolab.load(gltf.glb()).instances[0].name == "node 0"
 
 
 def test_a_buffer_too_short(gltf):
     path = gltf.gltf("points.bin")
     (gltf.folder / "points.bin").write_bytes(b"1234")
-    refuse(path, "buffer 0 is truncated: 4 of 36 bytes")
+    refuse(path, r"buffers\[0\] is truncated: 4 of 36 bytes")
 
 
 def test_a_missing_buffer(gltf):
     path = gltf.gltf("points.bin")
     (gltf.folder / "points.bin").unlink()
-    refuse(path, r"buffer 'points\.bin' is missing")
+    refuse(path, r"buffers\[0\]: the file 'points\.bin' is missing")
 
 
 def test_nan_names_file_mesh_and_vertex(gltf):
@@ -319,13 +360,14 @@ def test_a_singular_transform_names_the_node(gltf):
 
 def test_an_enormous_scene(gltf):
     gltf.header["nodes"][0]["scale"] = [1e16, 1e16, 1e16]
-    refuse(gltf.glb(), r"reaches 1e\+16 units", SceneError)
+    refuse(gltf.glb(), r"instance 'first' reaches 1e\+16 units", SceneError)
 
 
 def test_a_corrupt_png(gltf):
     data = png((1, 2, 3, 4), (64, 64))
     gltf.image(bufferView=gltf.view(data[:60]), name="skin")
-    refuse(gltf.glb(), "image 'skin' is corrupt")
+    with pytest.warns(Notice, match="material 'paint': image 'skin' is corrupt.*; drawn without"):
+        assert aolab.load(gltf.glb()).instances[0].mesh.material.texture is None
 
 
 def test_a_decompression_bomb_is_refused_before_decoding(gltf):
@@ -336,7 +378,7 @@ def test_a_decompression_bomb_is_refused_before_decoding(gltf):
 def test_a_missing_texture_is_a_notice(gltf):
     gltf.image(uri="gone.png")
     gltf.header["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = [0.5, 0.25, 0, 1]
-    with pytest.warns(Notice, match=r"the texture 'gone\.png' of material 'paint' is missing"):
+    with pytest.warns(Notice, match=r"material 'paint': its texture 'gone\.png' is missing; drawn without"):
         material = aolab.load(gltf.gltf()).instances[0].mesh.material
     assert material.texture is None
     assert material.base_color == (0.5, 0.25, 0)
@@ -348,15 +390,152 @@ URLS = ["http://example.org/x.png", "file:///etc/hostname", "HTTPS://example.org
 
 @pytest.mark.parametrize("uri", OUTSIDE + URLS)
 @pytest.mark.parametrize("what", ["image", "buffer"])
-def test_references_that_leave_the_folder_are_refused(tmp_path, what, uri):
+def test_references_that_leave_the_folder_are_not_read(tmp_path, what, uri):
+    """Without its buffer a file is refused; without a texture it is drawn."""
     (tmp_path / "x.png").write_bytes(png((1, 1, 1, 1)))
     (tmp_path / "model").mkdir()
     os.symlink(tmp_path / "x.png", tmp_path / "model" / "link.png")
     file = GltfFile(tmp_path / "model")
+    reason = "outside its folder" if uri in OUTSIDE else "a URL or absolute path"
     if what == "image":
         file.image(uri=uri)
-        path = file.gltf()
+        with pytest.warns(Notice, match=reason):
+            assert aolab.load(file.gltf()).instances[0].mesh.material.texture is None
     else:
         path = file.gltf()
         path.write_text(path.read_text().replace(file.header["buffers"][0]["uri"], uri.replace("\\", "\\\\")))
-    refuse(path, "outside its folder" if uri in OUTSIDE else "a URL or absolute path")
+        refuse(path, reason)
+
+
+# parts that cannot be drawn, and what is told
+
+
+def light(gltf, **light):
+    gltf.header.setdefault("extensions", {"KHR_lights_punctual": {"lights": []}})
+    lights = gltf.header["extensions"]["KHR_lights_punctual"]["lights"]
+    lights.append({"type": "point", **light})
+    gltf.header["nodes"].append({
+        "translation": [0, 0, 2.0 + len(lights)],
+        "extensions": {"KHR_lights_punctual": {"light": len(lights) - 1}},
+    })  # fmt: skip
+    gltf.header["scenes"][0]["nodes"].append(len(gltf.header["nodes"]) - 1)
+
+
+def test_lights_beyond_the_shadow_maps_have_no_shadow(gltf):
+    for _ in range(7):
+        light(gltf)
+    with pytest.warns(Notice, match="2 of its 7 lights cast no shadow: shadow maps hold 32 tiles"):
+        scene = aolab.load(gltf.glb())
+    assert [one.shadow for one in scene.lights] == [True] * 5 + [False] * 2
+
+
+def test_shadows_are_limited_by_a_parameter(gltf):
+    for _ in range(7):
+        light(gltf)
+    scene = aolab.load(f"{gltf.glb()}?shadows=2")  # and nothing is told
+    assert [one.shadow for one in scene.lights] == [True] * 2 + [False] * 5
+
+
+def test_photometric_lights_are_scaled_together(gltf):
+    """A sun of 100,000 lux and a lamp of 1,000 candela, about 3 units away, under a sky whose radiance is 1."""
+    light(gltf, type="directional", intensity=100_000)
+    light(gltf, type="point", intensity=1000)
+    with pytest.warns(Notice, match=r"its lights are photometric, about 1e\+05 lux at the surfaces: multiplied by 3"):
+        sun, lamp = aolab.load(gltf.glb()).lights
+    assert sun.irradiance[0] == pytest.approx(3.4, rel=0.01)
+    assert sun.irradiance[0] / lamp.intensity[0] == pytest.approx(100)
+
+
+def test_a_light_that_cannot_be_is_left_out(gltf):
+    light(gltf, intensity=-1, name="dark")
+    light(gltf, intensity=1)
+    with pytest.warns(Notice, match="light 'dark' was left out: PointLight: intensity = .* is negative"):
+        assert len(aolab.load(gltf.glb()).lights) == 1
+
+
+def test_properties_that_are_not_read_are_told_from_the_file(gltf):
+    gltf.material(
+        normalTexture={"index": 0},
+        occlusionTexture={"index": 0, "strength": 1},
+        pbrMetallicRoughness={"metallicFactor": 1, "roughnessFactor": 0.5},
+        extensions={"KHR_materials_clearcoat": {}, "ACME_glitter": {}},
+        extras={"anything": 1},
+    )
+    gltf.header["extensionsUsed"] = ["KHR_materials_clearcoat", "KHR_lights_punctual"]
+    names = "ACME_glitter, KHR_materials_clearcoat, materials.metallicFactor, materials.normalTexture, "
+    with pytest.warns(Notice, match=re.escape(f"read, but not used: {names}materials.occlusionTexture")):
+        aolab.load(gltf.glb())
+
+
+def test_many_parts_left_out_are_one_notice(gltf):
+    for index in range(20):
+        gltf.header["nodes"].append({"mesh": 0, "scale": [0, 0, 0], "name": f"hidden {index}"})
+        gltf.header["scenes"][0]["nodes"].append(index + 1)
+    with pytest.warns(Notice, match="left out: instance 'hidden 0': .*; and 17 more") as caught:
+        assert len(aolab.load(gltf.glb()).instances) == 1
+    assert len(caught) == 1
+
+
+def test_a_name_of_100_000_characters_is_shortened(gltf):
+    gltf.header["nodes"][0].update(name="n" * 100_000, scale=[0, 0, 0])
+    with pytest.raises(SceneError) as caught:
+        aolab.load(gltf.glb())
+    assert len(str(caught.value)) < 500
+
+
+def test_draco_that_is_used_but_not_required(gltf, monkeypatch):
+    """Without the extra the plain arrays are drawn, where the file has some; else the part is left out."""
+    monkeypatch.setitem(sys.modules, "DracoPy", None)
+    primitive = gltf.header["meshes"][0]["primitives"][0]
+    draco = {"bufferView": gltf.view(b"no Draco"), "attributes": {"POSITION": 0}}
+    primitive["extensions"] = {"KHR_draco_mesh_compression": draco}
+    gltf.header["extensionsUsed"] = ["KHR_draco_mesh_compression"]
+    assert aolab.load(gltf.glb()).triangles == 1
+    del gltf.header["accessors"][0]["bufferView"]
+    refuse(gltf.glb(), r"mesh 'triangle' is compressed with Draco; pip install 'aolab\[draco\]' reads it", SceneError)
+
+
+def test_animation_parameters(gltf):
+    with pytest.raises(ParameterError, match="time and animation need an animation, and the file has none"):
+        aolab.load(gltf.glb(), time=1)
+    times, values = gltf.accessor(np.float32([0, 1])), gltf.accessor(np.float32([(0, 0, 0), (1, 0, 0)]))
+    gltf.header["animations"] = [{
+        "name": "walk",
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+        "samplers": [{"input": times, "output": values}],
+    }]  # fmt: skip
+    path = gltf.glb()
+    assert aolab.load(f"{path}?time=0.5").bounds[0, 0] == 0.5
+    assert aolab.load(path, time=0.25, animation=0).source == f"{path}?time=0.25&animation=0"
+    with pytest.raises(ParameterError, match="animation = 'wlak' is unknown; did you mean 'walk'"):
+        aolab.load(path, animation="wlak")
+    with pytest.raises(ParameterError, match=r"time = 'soon' is not valid. The time of the file's animation"):
+        aolab.load(path, time="soon")
+
+
+def test_a_chain_of_2000_nodes(gltf):
+    """In time linear in its length: 37 s before, for the pose of each node was looked up along the whole chain."""
+    gltf.header["nodes"] = [{"translation": [0, 0, 1], "children": [index + 1]} for index in range(1999)]
+    gltf.header["nodes"].append({"mesh": 0})
+    assert aolab.load(gltf.glb()).bounds[0, 2] == 1999
+
+
+def test_primitives_that_share_vertices_keep_those_they_use(gltf):
+    gltf.header["meshes"][0]["primitives"] = [
+        {"attributes": {"POSITION": 0}, "indices": gltf.accessor(np.uint16([0, 1, 2]))},
+        {"attributes": {"POSITION": gltf.accessor(np.float32(np.random.default_rng(1).random((500, 3))))},
+         "indices": gltf.accessor(np.uint16([7, 300, 12]))},
+    ]  # fmt: skip
+    assert [len(instance.mesh.vertices) for instance in aolab.load(gltf.glb()).instances] == [3, 3]
+
+
+def test_the_memory_of_a_file_is_limited(gltf):
+    gltf.image(bufferView=gltf.view(png((1, 2, 3, 255), (400, 400))))
+    gltf.attribute("TEXCOORD_0", np.zeros((3, 2), np.float32))
+    with pytest.raises(
+        FileError, match=r"image 'image 0' is refused: it needs 640 KB of memory beside the .* KB in use"
+    ):
+        aolab.load(gltf.glb(), memory="100KB")
+    gltf.header["accessors"][0].update(count=2_000_000_000)
+    del gltf.header["accessors"][0]["bufferView"]
+    refuse(gltf.glb(), r"accessors\[0\] is refused: it needs 24 GB of memory")

@@ -1,5 +1,7 @@
 """OBJ, PLY and STL files, and what is refused before a file is read."""
 
+import os
+
 import numpy as np
 import pytest
 import trimesh
@@ -70,7 +72,10 @@ def test_quads_and_polygons_become_triangles(tmp_path):
 
 def test_a_missing_mtl_is_a_notice(tmp_path):
     path = write_obj(tmp_path, "mtllib gone.mtl\nusemtl paint\n" + OBJ)
-    with pytest.warns(Notice, match=r"material file 'gone\.mtl' is missing"):
+    with (
+        pytest.warns(Notice, match=r"material file 'gone\.mtl' is missing; drawn without"),
+        pytest.warns(Notice, match="material 'paint' is not defined; drawn in the default grey"),
+    ):
         assert only_mesh(path).material.base_color == (0.8, 0.8, 0.8)
 
 
@@ -84,21 +89,31 @@ def test_a_missing_obj_texture_is_a_notice(tmp_path):
 @pytest.mark.parametrize(
     "name", ["../x.png", "/etc/hostname", "..\\x.png", "http://example.org/x.png", "file:///x.png"]
 )
-def test_obj_textures_outside_the_folder_are_refused(tmp_path, name):
+def test_obj_textures_outside_the_folder_are_not_read(tmp_path, name):
     (tmp_path / "x.png").write_bytes(png((1, 1, 1, 1)))
     (tmp_path / "inner").mkdir()
-    refuse(write_obj(tmp_path / "inner", mtl=f"newmtl paint\nmap_Kd {name}\n"), "outside its folder|a URL")
+    path = write_obj(tmp_path / "inner", mtl=f"newmtl paint\nKd 1 0 0\nmap_Kd {name}\n")
+    with pytest.warns(Notice, match=r"its texture '.*(outside its folder|a URL).*; drawn without"):
+        material = only_mesh(path).material
+    assert (material.base_color, material.texture) == ((1, 0, 0), None)
 
 
-def test_an_mtl_outside_the_folder_is_refused(tmp_path):
+def test_an_mtl_outside_the_folder_is_not_read(tmp_path):
     (tmp_path / "x.mtl").write_text("newmtl paint\nKd 1 0 0\n")
     (tmp_path / "inner").mkdir()
-    refuse(write_obj(tmp_path / "inner", mtl="", mtllib="../x.mtl"), r"'\.\./x\.mtl', outside its folder")
+    path = write_obj(tmp_path / "inner", mtl="", mtllib="../x.mtl")
+    with (
+        pytest.warns(Notice, match=r"'\.\./x\.mtl' lies outside its folder"),
+        pytest.warns(Notice, match="'paint' is not defined"),
+    ):
+        assert only_mesh(path).material.base_color == (0.8, 0.8, 0.8)
 
 
 def test_a_corrupt_obj_texture(tmp_path):
     (tmp_path / "x.png").write_bytes(png((1, 1, 1, 1))[:40])
-    refuse(write_obj(tmp_path, mtl="newmtl paint\nmap_Kd x.png\n"), r"image 'x\.png' is corrupt")
+    path = write_obj(tmp_path, mtl="newmtl paint\nmap_Kd x.png\n")
+    with pytest.warns(Notice, match=r"image 'x\.png' is corrupt.*; drawn without"):
+        assert only_mesh(path).material.texture is None
 
 
 def test_an_obj_texture_bomb(tmp_path):
@@ -107,11 +122,11 @@ def test_an_obj_texture_bomb(tmp_path):
 
 
 def test_obj_index_out_of_range(tmp_path):
-    refuse(write_obj(tmp_path, OBJ.replace("3/3", "9/3")), "as Wavefront OBJ: IndexError.*8|indices.*8", Error)
+    refuse(write_obj(tmp_path, OBJ.replace("3/3", "9/3")), r"line 7: 'f 1/1 2/2 9/3' has vertex 9 of 3")
 
 
 def test_obj_with_words_for_numbers(tmp_path):
-    refuse(write_obj(tmp_path, OBJ + "f 1/1 2/2 three\n"), "as Wavefront OBJ")
+    refuse(write_obj(tmp_path, OBJ + "f 1/1 2/2 three\n"), "line 8: 'three' is no corner of a face")
 
 
 def test_obj_with_nan(tmp_path):
@@ -119,7 +134,7 @@ def test_obj_with_nan(tmp_path):
 
 
 def test_obj_of_points_alone(tmp_path):
-    refuse(write_obj(tmp_path, "v 0 0 0\nv 1 0 0\n"), r"no triangles: it holds only 'model' \(PointCloud\)", SceneError)
+    refuse(write_obj(tmp_path, "v 0 0 0\nv 1 0 0\n"), "no triangles: it holds no geometry", SceneError)
 
 
 def test_old_obj_and_mtl_are_latin_1(tmp_path):
@@ -184,7 +199,7 @@ def write_ply(folder, rows, face="3 0 1 2\n", comment="", uv=""):
 
 
 def test_ply_of_points_alone(tmp_path):
-    refuse(write_ply(tmp_path, "0 0 0\n1 0 0\n0 1 0\n", face=""), "PointCloud", SceneError)
+    refuse(write_ply(tmp_path, "0 0 0\n1 0 0\n0 1 0\n", face=""), "its 3 vertices are points", SceneError)
 
 
 def test_ply_index_out_of_range(tmp_path):
@@ -200,7 +215,7 @@ def test_ply_truncated(tmp_path):
     path = tmp_path / "model.ply"
     trimesh.creation.icosphere(2).export(path)
     path.write_bytes(path.read_bytes()[:-200])
-    refuse(path, "cannot read .* as PLY")
+    refuse(path, "is truncated: it ends within element 'face'")
 
 
 @pytest.mark.parametrize("name", ["x.png", "../x.png"])
@@ -213,7 +228,8 @@ def test_ply_texture(tmp_path, name):
         tmp_path / "inner", "0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n", comment=f"comment TextureFile {name}\n", uv=uv
     )
     if name == "../x.png":
-        refuse(path, "outside its folder")
+        with pytest.warns(Notice, match="outside its folder.*; drawn without"):
+            assert only_mesh(path).material.texture is None
     else:
         mesh = only_mesh(path)
         assert mesh.material.texture.pixels[0, 0].tolist() == [9, 8, 7, 255]
@@ -263,21 +279,23 @@ def test_a_directory_lists_its_models(tmp_path):
 def test_an_unknown_extension_lists_the_known(tmp_path):
     path = tmp_path / "model.blend"
     path.write_bytes(b"x")
-    refuse(path, r"unknown extension '\.blend'; known: \.glb, \.gltf, \.obj, \.ply, \.stl")
+    refuse(
+        path, r"unknown extension '\.blend'; export it as \.glb from Blender; known: \.glb, \.gltf, \.obj, \.ply, \.stl"
+    )
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".obj", ".ply", ".stl"])
+@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".obj", ".ply", ".stl", ".off", ".3mf"])
 def test_an_empty_file(tmp_path, suffix):
     path = tmp_path / f"model{suffix}"
     path.touch()
     refuse(path, "is empty")
 
 
-@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".ply", ".stl"])
+@pytest.mark.parametrize("suffix", [".glb", ".gltf", ".ply", ".stl", ".off", ".3mf"])
 def test_rubbish(tmp_path, suffix):
     path = tmp_path / f"model{suffix}"
     path.write_bytes(b"this is no model, whatever its name says" * 10)
-    refuse(path, "cannot read|corrupt|not a GLB|truncated", Error)
+    refuse(path, "corrupt|not a GLB|truncated|is no (PLY|OFF) file", Error)
 
 
 @pytest.mark.parametrize("source", ["https://example.org/model.glb", "file:///models/model.glb"])
@@ -291,11 +309,54 @@ def test_upper_case_extension(tmp_path):
     assert aolab.load(path).triangles == 1
 
 
-def test_a_file_takes_no_parameters(tmp_path):
-    with pytest.raises(ParameterError, match=r"parameters \(detail\) are for the scenes"):
-        aolab.load(write_obj(tmp_path), detail=2)
+def test_the_parameters_of_a_file(tmp_path):
+    path = write_obj(tmp_path)
+    with pytest.raises(ParameterError, match=r"model\.obj: a file has no parameter 'upaxis'; did you mean 'up_axis'\?"):
+        aolab.load(path, upaxis=2)
+    with pytest.raises(ParameterError, match=r"up_axis = 'x' is not valid. The file's axis that points up"):
+        aolab.load(f"{path}?up_axis=x")
+    with pytest.raises(ParameterError, match="parameter 'up_axis' is given twice"):
+        aolab.load(f"{path}?up_axis=z", up_axis="z")
+    with pytest.raises(ParameterError, match="'up' is not key=value"):
+        aolab.load(f"{path}?up")
+    with pytest.raises(ParameterError, match="time and animation are for glTF; Wavefront OBJ has no animations"):
+        aolab.load(path, time=1)
+
+
+@pytest.mark.parametrize("query", [True, False])
+def test_a_file_with_z_up(tmp_path, query):
+    """x stays, z becomes y, y becomes -z; the source makes the same scene again."""
+    path = write_obj(tmp_path, "v 0 0 0\nv 1 0 2\nv 0 3 4\nf 1 2 3\n")
+    scene = aolab.load(f"{path}?up_axis=z") if query else aolab.load(path, up_axis="z")
+    np.testing.assert_allclose(scene.bounds, [[0, 0, -3], [1, 4, 0]], atol=1e-12)
+    assert scene.source == f"{path}?up_axis=z"
+    np.testing.assert_array_equal(aolab.load(scene.source).bounds, scene.bounds)
+
+
+def test_a_file_whose_name_holds_a_question_mark(tmp_path):
+    path = write_obj(tmp_path).rename(tmp_path / "what?.obj")
+    assert aolab.load(path).triangles == 1
 
 
 def test_an_unknown_object():
     with pytest.raises(ParameterError, match=r"cannot load a builtins\.int; known: a name of scenes/"):
         aolab.load(3)
+
+
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "a.glb")
+    refuse(tmp_path / "a.glb", "is a named pipe; give a regular file")
+    os.mkfifo(tmp_path / "model.mtl")
+    with (
+        pytest.warns(Notice, match=r"'model\.mtl' is a named pipe; give a regular file; drawn without"),
+        pytest.warns(Notice, match="'paint' is not defined"),
+    ):
+        aolab.load(write_obj(tmp_path, "mtllib model.mtl\nusemtl paint\n" + OBJ))
+
+
+@pytest.mark.parametrize("suffix", [".glb", ".obj", ".stl"])
+def test_a_sparse_file_of_20_gb_is_not_read(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    path.touch()
+    os.truncate(path, 20_000_000_000)
+    refuse(path, "the file is refused: it needs 20 GB of memory, and the limit is 2 GB")

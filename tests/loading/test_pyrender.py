@@ -60,19 +60,27 @@ def test_lights_camera_and_ambient():
     np.testing.assert_allclose([spot.inner, spot.outer], [10, 20])
     assert loaded.camera.fov == pytest.approx(50)
     assert loaded.camera.eye == (0, 0, 9)
+    assert loaded.camera.near == pyrender.PerspectiveCamera(yfov=1).znear
     np.testing.assert_allclose(loaded.environment.radiance[0, 0], (0.1, 0.2, 0.3))
 
 
 def test_points_are_left_out():
     scene = pyrender.Scene()
     scene.add(pyrender.Mesh.from_points(np.eye(3)))
-    with pytest.raises(SceneError, match="no triangles: the pyrender scene holds only 'mesh'"):
+    with pytest.raises(SceneError, match="nothing can be drawn: 'mesh' holds no triangles"):
         aolab.load(scene)
     scene.add(pyrender.Mesh.from_trimesh(trimesh.creation.box()))
-    with pytest.warns(Notice, match="hold no triangles: 'mesh'"):
+    with pytest.warns(Notice, match="left out: 'mesh' holds no triangles"):
         assert aolab.load(scene).triangles == 12
 
 
 def test_other_pyrender_objects():
     with pytest.raises(SceneError, match=r"cannot draw a pyrender\.Mesh; give a pyrender\.Scene"):
         aolab.load(pyrender.Mesh.from_trimesh(trimesh.creation.box()))
+
+
+def test_an_orthographic_camera():
+    scene = pyrender.Scene()
+    scene.add(pyrender.Mesh.from_trimesh(trimesh.creation.box()))
+    scene.add(pyrender.OrthographicCamera(xmag=3, ymag=2), pose=moved(0, 0, 9))
+    assert aolab.load(scene).camera.ortho == 4

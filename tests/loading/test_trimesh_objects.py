@@ -39,7 +39,7 @@ def test_a_trimesh_gets_faceted_normals_and_our_default_material():
 
 def test_normals_given_to_a_trimesh_are_kept():
     box = trimesh.creation.box()
-    given = np.tile([0.0, 0.6, 0.8], (8, 1))
+    given = np.tile([0.48, 0.6, 0.64], (8, 1))
     mesh = trimesh.Trimesh(box.vertices, box.faces, vertex_normals=given, process=False)
     np.testing.assert_allclose(aolab.load(mesh).instances[0].mesh.normals, given, atol=1e-7)
 
@@ -100,7 +100,7 @@ def test_a_material_for_each_face_is_said():
 
 def test_points_beside_triangles_are_left_out_with_a_notice():
     scene = trimesh.Scene({"box": trimesh.creation.box(), "cloud": trimesh.PointCloud(np.eye(3))})
-    with pytest.warns(Notice, match=r"left out, as they hold no triangles: 'cloud' \(PointCloud\)"):
+    with pytest.warns(Notice, match=r"left out: 'cloud' holds no triangles \(PointCloud\)"):
         assert len(aolab.load(scene).instances) == 1
 
 
@@ -108,7 +108,7 @@ def test_points_beside_triangles_are_left_out_with_a_notice():
     "source", [trimesh.PointCloud(np.eye(3)), trimesh.Scene(), trimesh.Scene({"c": trimesh.PointCloud(np.eye(3))})]
 )
 def test_no_triangles(source):
-    with pytest.raises(SceneError, match="no triangles"):
+    with pytest.raises(SceneError, match=r"no(thing| triangles)"):
         aolab.load(source)
 
 

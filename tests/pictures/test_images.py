@@ -1,6 +1,7 @@
 """Pictures from files: every kind is read as documented; every bad file is refused by name."""
 
 import io
+import os
 import struct
 import zlib
 
@@ -9,7 +10,8 @@ import OpenEXR
 import pytest
 from PIL import Image
 
-from aolab.errors import FileError
+from aolab.errors import FileError, ParameterError
+from aolab.input import Budget
 from aolab.pictures.images import linear_from_srgb, read_image, read_radiance
 
 RNG = np.random.default_rng(11)
@@ -329,3 +331,69 @@ def test_missing_radiance_is_named(tmp_path, name):
 def test_another_kind_of_radiance_is_refused_with_the_known_ones(tmp_path):
     with pytest.raises(FileError, match=r"'\.pfm' is not a radiance format; known: \.exr, \.hdr"):
         read_radiance(tmp_path / "a.pfm")
+
+
+# --- before anything is read
+
+
+def test_a_header_that_would_end_the_process_is_an_error(tmp_path):
+    """OpenEXR 3.5.3 aborts in `InputFile` on a name or text that is not UTF-8."""
+    plane = {name: np.ones((4, 8), np.float32) for name in "RGB"}
+    whole = write_exr(tmp_path / "a.exr", plane, comments="a remark", note=["one", "two"]).read_bytes()
+    for text, damaged in {
+        b"displayWindow": b"displayWi\xeedow",
+        b"a remark": b"a r\xe4mark",
+        b"two": b"t\xffo",
+    }.items():
+        assert text in whole
+        (tmp_path / "bad.exr").write_bytes(whole.replace(text, damaged))
+        with pytest.raises(FileError, match=r"bad\.exr' is not a readable OpenEXR picture: .* is not UTF-8"):
+            read_radiance(tmp_path / "bad.exr")
+
+
+def test_the_first_part_of_several_is_read(tmp_path):
+    parts = [
+        OpenEXR.Part({"type": OpenEXR.scanlineimage}, {c: np.full((4, 8), v, np.float32) for c in "RGB"}, name)
+        for name, v in (("near", 2), ("far", 3))
+    ]
+    with OpenEXR.File(parts) as file:
+        file.write(str(tmp_path / "a.exr"))
+    np.testing.assert_array_equal(read_radiance(tmp_path / "a.exr"), np.full((4, 8, 3), 2))
+
+
+@pytest.mark.parametrize("suffix", ["png", "hdr", "exr"])
+def test_a_pipe_is_refused_and_not_waited_for(tmp_path, suffix):
+    os.mkfifo(tmp_path / f"a.{suffix}")
+    read = (lambda path: read_image(path, path.name)) if suffix == "png" else read_radiance
+    with pytest.raises(FileError, match=rf"a\.{suffix}' is a named pipe; give a regular file"):
+        read(tmp_path / f"a.{suffix}")
+
+
+def test_a_file_larger_than_the_memory_is_not_read(tmp_path):
+    path = tmp_path / "a.hdr"
+    path.touch()
+    os.truncate(path, 20_000_000_000)  # sparse
+    with pytest.raises(FileError, match=r"needs 20 GB of memory, and the limit is 2 GB; .*AOLAB_MEMORY=20GB"):
+        read_radiance(path)
+
+
+def test_a_picture_of_few_bytes_and_many_pixels(tmp_path, monkeypatch):
+    """A run that repeats itself claims 16384 × 8192 pixels in 72 bytes."""
+    path = tmp_path / "a.hdr"
+    path.write_bytes(b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 8192 +X 16384\n" + b"\x80\x80\x80\x80\1\1\1\xff" * 2)
+    with pytest.raises(FileError, match=r"needs 2\.15 GB of memory beside the .*AOLAB_MEMORY=3GB"):
+        read_radiance(path)
+    monkeypatch.setenv("AOLAB_MEMORY", "3 GB")
+    with pytest.raises(FileError, match="it ends after"):  # now it is decoded
+        read_radiance(path)
+
+
+def test_a_budget_adds_up_and_is_stated():
+    budget = Budget("1KB")
+    data = encoded(Image.new("RGBA", (10, 10)))
+    read_image(data, "a", budget=budget)
+    read_image(data, "b", budget=budget)
+    with pytest.raises(FileError, match="image 'c' is refused: it needs 400 B of memory beside the 800 B in use, and"):
+        read_image(data, "c", budget=budget)
+    with pytest.raises(ParameterError, match=r"memory = .much. is no size; write bytes, .*4GB"):
+        Budget("much")

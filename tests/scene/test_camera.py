@@ -1,5 +1,7 @@
 """The camera: a rigid view, a projection that contains the scene, and its errors."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -53,13 +55,40 @@ def test_given_clip_planes_are_kept():
     assert Camera((0, 0, 5), (0, 0, 0), near=0.5, far=7).clip_planes(UNIT) == (0.5, 7)
 
 
+@pytest.mark.parametrize("size", [(100, 100), (300, 100), (100, 300)])
 @pytest.mark.parametrize("fov", [5, 40, 120])
-def test_framing_shows_everything(fov):
+def test_framing_shows_everything_in_a_picture_of_any_shape(fov, size):
     bounds = np.array([[-3.0, 0.0, 1.0], [5.0, 0.5, 2.0]])
     camera = Camera.framing(bounds, fov=fov)
     corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
-    for corner in corners:
-        assert np.abs(project(camera, corner, (100, 100), bounds)).max() <= 1
+    found = np.array([project(camera, corner, size, bounds) for corner in corners])
+    assert np.abs(found).max() <= 1
+    if size[0] <= size[1]:
+        assert np.abs(found[:, :2]).max() > 0.6  # and fills it
+
+
+def test_a_framed_landscape_is_as_it_was_without_fit():
+    camera = Camera.framing(UNIT)
+    np.testing.assert_array_equal(camera.half_extent((300, 100)), replace(camera, fit=False).half_extent((300, 100)))
+
+
+def test_an_orthographic_camera_shows_its_height_at_every_distance():
+    camera = Camera((0, 0, 5), (0, 0, 0), ortho=4)
+    for z in (-1, 0, 1):
+        np.testing.assert_allclose(project(camera, (0, 2, z))[:2], (0, 1), atol=1e-12)
+        np.testing.assert_allclose(project(camera, (4, -2, z))[:2], (1, -1), atol=1e-12)  # 2:1
+    near, far = camera.clip_planes(UNIT)
+    np.testing.assert_allclose([project(camera, (0, 0, 5 - z))[2] for z in (near, far)], (-1, 1), atol=1e-12)
+
+
+@pytest.mark.parametrize("projection", [{"fov": 50}, {"ortho": 3}])
+@pytest.mark.parametrize("fit", [False, True])
+@pytest.mark.parametrize("size", [(60, 40), (40, 60)])
+def test_a_margin_leaves_the_picture_in_the_middle(size, fit, projection):
+    camera = Camera((0, 0, 5), (0, 0, 0), fit=fit, **projection)
+    larger = size[0] + 16, size[1] + 16
+    wide = camera.with_margin(size, larger)
+    np.testing.assert_allclose(np.divide(wide.half_extent(larger), larger), np.divide(camera.half_extent(size), size))
 
 
 @pytest.mark.parametrize(
@@ -74,6 +103,8 @@ def test_framing_shows_everything(fov):
         ({"fov": 0}, r"fov = 0 is outside \(0, 180\) degrees"),
         ({"fov": 180}, r"fov = 180 is outside"),
         ({"fov": float("nan")}, r"fov = nan is outside"),
+        ({"ortho": 0}, r"ortho = 0 is no finite height above 0"),
+        ({"ortho": float("inf")}, r"ortho = inf"),
         ({"near": 0}, r"near = 0 must be finite and above 0"),
         ({"near": 2, "far": 1}, r"far = 1 must be finite and above near = 2"),
         ({"near": float("nan")}, r"near = nan"),

@@ -44,9 +44,43 @@ def test_given_normals_are_kept_and_nothing_is_split():
     assert len(mesh.vertices) == 4
 
 
-def test_a_normal_without_length_has_all_normals_generated():
-    normals = np.array([[0, 1, 0], [0, 1, 0], [0, 1, 0], [0, 0, 0]], float)
-    np.testing.assert_allclose(Mesh(SQUARE, TWO, normals=normals).normals, [[0, 0, 1]] * 4)
+def test_a_normal_of_no_length_is_made_from_its_faces():
+    normals = np.array([[0, 0.6, 0.8], [0, 0.6, 0.8], [0, 0.6, 0.8], [0, 0, 0]], float)
+    with pytest.warns(Notice, match="mesh 'mesh': 1 of 4 normals have no length; made from the faces"):
+        mesh = Mesh(SQUARE, TWO, normals=normals)
+    np.testing.assert_allclose(mesh.normals, [*normals[:3], (0, 0, 1)], atol=1e-7)
+
+
+def test_normals_without_length_are_all_made():
+    with pytest.warns(Notice, match="its 4 normals have no length"):
+        mesh = Mesh(SQUARE, TWO, normals=np.zeros((4, 3)))
+    np.testing.assert_allclose(mesh.normals, [[0, 0, 1]] * 4)
+
+
+@pytest.mark.parametrize("length", [1e-25, 1e-20, 1e-3, 1e20])
+def test_normals_get_unit_length(length):
+    """The square of the shortest of these is 0 in float32, that of the longest is infinite."""
+    mesh = Mesh(SQUARE, TWO, normals=np.tile([0.6 * length, 0, 0.8 * length], (4, 1)))
+    np.testing.assert_allclose(mesh.normals, [[0.6, 0, 0.8]] * 4, rtol=1e-6)
+
+
+def test_normals_in_the_plane_of_their_triangle_are_replaced_and_the_rest_kept():
+    """The second triangle's normals are fine; the vertices that both share are split, with their uv."""
+    normals = np.array([[1, 0, 0], [0, 1, 0], [1, 0, 0], [0, 0.6, 0.8]])
+    bent = SQUARE + np.float32([(0, 0, 0), (0, 0, 0), (0, 0, 0), (0, 0, 0.5)])
+    with pytest.warns(Notice, match="the normals of 1 of 2 triangles lie in the triangle's plane"):
+        mesh = Mesh(bent, TWO, normals=normals, uv=SQUARE[:, :2])
+    np.testing.assert_allclose(mesh.normals[mesh.faces[0]], [[0, 0, 1]] * 3)
+    np.testing.assert_allclose(mesh.normals[mesh.faces[1]], normals[TWO[1]], atol=1e-7)
+    np.testing.assert_array_equal(mesh.uv, mesh.vertices[:, :2])
+    np.testing.assert_array_equal(mesh.vertices[mesh.faces], bent[TWO])
+
+
+def test_vertices_that_float32_cannot_hold_are_told():
+    far = SQUARE.astype(np.float64) + np.array((500_000, 0, 4_000_000))
+    with pytest.warns(Notice, match=r"mesh 'house': float32 moves its vertices by up to .* subtract their centre"):
+        Mesh(far + 0.1, TWO, name="house")
+    Mesh(far.astype(np.float32), TWO)  # given as such: nothing is moved here
 
 
 @pytest.mark.parametrize(
@@ -116,6 +150,24 @@ def test_a_small_or_large_triangle_is_not_degenerate(scale):
 def test_material_colours(color):
     with pytest.raises(SceneError, match="material 'paint': base_color"):
         Material(base_color=color, name="paint")
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({"emission": (1, -1, 0)}, r"emission = \(1, -1, 0\) is not three finite numbers from 0"),
+        ({"emission": (1, np.inf, 0)}, "emission = .* is not"),
+        ({"alpha": 1.5}, r"alpha = 1\.5 is outside \[0, 1\]"),
+    ],
+)
+def test_material_values(values, message):
+    with pytest.raises(SceneError, match=f"material 'lamp': {message}"):
+        Material(name="lamp", **values)
+
+
+def test_texture_wrap():
+    with pytest.raises(SceneError, match=r"texture 'bark': wrap = .* is not two of repeat, mirror, clamp"):
+        Texture(np.zeros((2, 2, 4), np.uint8), "bark", wrap=("repeat", "border"))
 
 
 @pytest.mark.parametrize("pixels", [np.zeros((2, 2, 3), np.uint8), np.zeros((2, 2, 4)), np.zeros((0, 2, 4), np.uint8)])

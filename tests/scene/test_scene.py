@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import small_scenes
 
-from aolab import DirectionalLight, Environment, Instance, Scene, SceneError
+from aolab import DirectionalLight, Environment, Instance, Mesh, Notice, Scene, SceneError
 
 BOX = small_scenes.box((0, 0, 0), (1, 2, 3))
 
@@ -54,8 +54,8 @@ def test_replace_keeps_the_meshes():
         (np.array([[1.0, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 1, 1]]), r"last row is .*, not affine"),
         (np.diag([1e200, 1e200, 1e200, 1.0]), r"reaches .*; the limit is"),
         (moved(x=1e16), r"reaches 1e\+16 units from the origin; the limit is 1e\+15"),
-        (moved(scale=1e-14), r"scene 'scene' has radius .*: too small for float32"),
-        (moved(x=1e9), r"too small for float32; scale it or move it to the origin"),
+        (moved(scale=1e-14), r"scene 'scene' has radius .*: too small for its coordinates"),
+        (moved(x=1e10), r"too small for its coordinates; scale it or move it to the origin"),
     ],
 )
 def test_placements_that_cannot_be_drawn_are_refused(matrix, message):
@@ -66,3 +66,17 @@ def test_placements_that_cannot_be_drawn_are_refused(matrix, message):
 def test_an_empty_scene_is_refused_by_name():
     with pytest.raises(SceneError, match="scene 'nothing' is empty: it holds no mesh"):
         Scene((), name="nothing")
+
+
+def test_a_few_vertices_far_out_do_not_decide_what_is_framed():
+    dense = small_scenes.sphere(1.0, (0, 0, 0), subdivisions=3)
+    sliver = Mesh(np.array([[0, 1, 0], [1e5, 2, 0], [0, 1.1, 0]]), [[0, 1, 2]])
+    with pytest.warns(Notice, match=r"nearly all of its vertices lie within .*× .* of its 1e\+05 × "):
+        scene = Scene((Instance(dense), Instance(sliver)))
+    assert np.linalg.norm(scene.camera.eye) < 10
+    assert scene.bounds[1, 0] == 1e5  # they are still there
+
+
+def test_a_model_on_a_wide_floor_is_framed_with_its_floor():
+    scene = Scene((Instance(small_scenes.sphere(1.0, (0, 1, 0))), Instance(small_scenes.floor(15.0))))
+    assert np.linalg.norm(scene.camera.eye) > 30

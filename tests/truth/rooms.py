@@ -46,7 +46,7 @@ def world_positions(frame):
     """(n, 3): the surface points of the pixels that show one, world space."""
     camera = aolab.Camera(**frame.info["camera"])
     width, height = frame.size
-    tan_x, tan_y = camera.tan_half_fov(frame.size)
+    tan_x, tan_y = camera.half_extent(frame.size)
     x = (2 * (np.arange(width) + 0.5) / width - 1) * tan_x
     y = (1 - 2 * (np.arange(height) + 0.5) / height) * tan_y
     rays = np.stack([*np.meshgrid(x, y), np.full((height, width), -1.0)], axis=-1)

@@ -14,7 +14,7 @@ def seen_whole(scene: aolab.Scene, radius: float, size: tuple[int, int], lab: ao
     frame = lab.render(scene, "ssao", size=size, radius=radius, falloff=0.5, **CONVERGED)
     truth = aolab.reference(scene, size=size, radius=radius, falloff=0.5, rays=256, cache=False)
     assert scene.camera is not None
-    reach = radius / (-frame["viewZ"] * scene.camera.tan_half_fov(size)[1]) * size[1] / 2  # in pixels
+    reach = radius / (-frame["viewZ"] * scene.camera.half_extent(size)[1]) * size[1] / 2  # in pixels
     y, x = np.mgrid[: size[1], : size[0]]
     inside = np.minimum(np.minimum(x, size[0] - 1 - x), np.minimum(y, size[1] - 1 - y)) > reach
     known = inside & frame.mask

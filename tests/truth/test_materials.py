@@ -13,7 +13,7 @@ CAMERA = aolab.Camera(eye=(0.2, 0.3, 4), target=(0, 0, 0), fov=35)
 
 
 def hits_through_pixels(world, size):
-    tan_x, tan_y = CAMERA.tan_half_fov(size)
+    tan_x, tan_y = CAMERA.half_extent(size)
     x = (2 * (np.arange(size[0]) + 0.5) / size[0] - 1) * tan_x
     y = (1 - 2 * (np.arange(size[1]) + 0.5) / size[1]) * tan_y
     rays = np.stack([*np.meshgrid(x, y), np.full((size[1], size[0]), -1.0)], axis=-1).reshape(-1, 3)

@@ -1,0 +1,191 @@
+"""From the parts that a reader found to a scene: a part that cannot be drawn is left out, and told."""
+
+import warnings
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from ..errors import Notice, SceneError, shorten
+from ..scene.camera import Camera
+from ..scene.environment import Environment
+from ..scene.lights import MAX_SHADOW_TILES, Light, shadow_tiles
+from ..scene.mesh import Material, Mesh
+from ..scene.scene import MAX_EXTENT, Instance, Scene
+
+TOLD = 3  # names of a note; the rest is counted
+# A mesh whose centre is farther from its origin than this many half diagonals is moved there. Below, the 24 bits of
+# float32 move its vertices by less than 1e-5 of the half diagonal.
+FAR = 100.0
+
+
+class Notes:
+    """What a reader repaired, left out or did not use, collected into few notices."""
+
+    def __init__(self) -> None:
+        self._kinds: dict[tuple[str, str, str], list[str]] = {}
+
+    def add(self, before: str, item: str = "", after: str = "", separator: str = ", ") -> None:
+        """A note, `before` + `item` + `after`. Notes that differ in their items become one, which lists the first."""
+        self._kinds.setdefault((before, after, separator), []).append(item)
+
+    @contextmanager
+    def collecting(self) -> Iterator[None]:
+        """The notices that are raised within become notes."""
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            yield
+        for one in caught:
+            if issubclass(one.category, Notice):
+                self.add("", str(one.message), separator="; ")
+            else:
+                warnings.warn_explicit(one.message, one.category, one.filename, one.lineno)
+
+    def texts(self) -> list[str]:
+        """One text a kind."""
+        texts = []
+        for (before, after, separator), items in self._kinds.items():
+            items = list(dict.fromkeys(items))
+            more = f"{separator}and {len(items) - TOLD} more" if len(items) > TOLD else ""
+            texts.append(f"{before}{separator.join(items[:TOLD])}{more}{after}")
+        return texts
+
+    def emit(self, source: str | None) -> None:
+        """A `Notice` for each kind, with the `source` before it, if there is one."""
+        for text in self.texts():
+            warnings.warn(f"{source}: {text}" if source else text, Notice, stacklevel=2)
+        self._kinds.clear()
+
+
+@dataclass(eq=False)
+class Part:
+    """Triangles as a source gives them, unchecked: the arguments of `Mesh`."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
+    normals: np.ndarray | None = None
+    uv: np.ndarray | None = None
+    colors: np.ndarray | None = None
+    material: Material = field(default_factory=Material)
+    name: str = "mesh"
+
+
+@dataclass(frozen=True)
+class Placed:
+    """A part where it stands: `world_from_local` (4, 4). A part that is placed twice becomes one mesh."""
+
+    part: Part
+    world_from_local: np.ndarray
+    name: str
+
+
+@dataclass
+class Content:
+    """All that a reader found in a source."""
+
+    placed: list[Placed] = field(default_factory=list)
+    lights: list[Light] = field(default_factory=list)
+    camera: Camera | None = None
+    environment: Environment | None = None
+    left_out: list[str] = field(default_factory=list)  # parts that the reader could not make, each a sentence
+    notes: Notes = field(default_factory=Notes)
+
+
+def scene_of(content: Content, name: str = "scene", source: str | None = None, shadows: int | None = None) -> Scene:
+    """The scene of the parts that can be drawn. `shadows`: how many lights cast shadows at most.
+
+    Notices are raised, each with the `source` before it. Raises `SceneError` where nothing is left. A source with
+    lights and no environment gets a sky, so that ambient light has a source too.
+    """
+    notes, instances, left_out = content.notes, [], list(content.left_out)
+    meshes: dict[Part, tuple[Mesh, np.ndarray] | None] = {}
+    for placed in content.placed:
+        try:
+            if placed.part not in meshes:
+                meshes[placed.part] = None
+                with notes.collecting():
+                    meshes[placed.part] = _mesh(placed.part)
+            made = meshes[placed.part]
+            if made is not None:
+                instances.append(_instance(*made, placed))
+        except SceneError as error:
+            left_out.append(str(error))
+    if not instances:
+        raise SceneError(_nothing(left_out, notes))
+    for reason in left_out:
+        notes.add("left out: ", reason, separator="; ")
+    lights = _with_shadows(content.lights, shadows, notes)
+    environment = content.environment or (Environment.sky() if lights else None)
+    with notes.collecting():
+        scene = Scene(tuple(instances), tuple(lights), environment, content.camera, name, source)
+    notes.emit(source)
+    return scene
+
+
+def _nothing(reasons: Sequence[str], notes: Notes) -> str:
+    if not reasons:
+        return "; ".join(["no triangles: it holds no geometry", *notes.texts()])
+    more = f"; and {len(reasons) - TOLD} more" if len(reasons) > TOLD else ""
+    return f"nothing can be drawn: {'; '.join(reasons[:TOLD])}{more}"
+
+
+def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
+    """The part's mesh, of the vertices that triangles use, and where its origin is in the part's own coordinates."""
+    name = shorten(part.name)
+    vertices, faces = np.asarray(part.vertices), np.asarray(part.faces, np.int64)
+    if vertices.ndim != 2 or vertices.shape[1:] != (3,) or not faces.size:
+        raise SceneError(f"mesh '{name}' is empty: {len(vertices)} vertices, {len(faces)} triangles")
+    if faces.min() < 0 or faces.max() >= len(vertices):
+        wrong = np.flatnonzero(((faces < 0) | (faces >= len(vertices))).any(axis=1))[0]
+        raise SceneError(
+            f"mesh '{name}': triangle {wrong} has indices {faces[wrong].tolist()}, "
+            f"but there are {len(vertices)} vertices"
+        )
+    normals, uv, colors = part.normals, part.uv, part.colors
+    for key, array in {"normals": normals, "uv": uv, "colors": colors}.items():
+        if array is not None and len(array) != len(vertices):
+            raise SceneError(f"mesh '{name}': {len(array)} {key} for {len(vertices)} vertices")
+    used = np.zeros(len(vertices), bool)
+    used[faces] = True
+    if not used.all():
+        number = np.cumsum(used) - 1
+        faces, vertices = number[faces], vertices[used]
+        normals, uv, colors = (None if array is None else array[used] for array in (normals, uv, colors))
+    offset = np.zeros(3)
+    with np.errstate(invalid="ignore", over="ignore"):  # not finite: `Mesh` refuses it
+        low, high = vertices.min(axis=0).astype(np.float64), vertices.max(axis=0).astype(np.float64)
+        centre = (low + high) / 2
+        if np.linalg.norm(centre) > FAR * np.linalg.norm(high - low) / 2 and np.isfinite(centre).all():
+            offset, vertices = centre, (vertices - centre).astype(np.float32)
+    return Mesh(vertices, faces, normals, uv, colors, part.material, name), offset
+
+
+def _instance(mesh: Mesh, offset: np.ndarray, placed: Placed) -> Instance:
+    matrix = np.array(placed.world_from_local, np.float64)
+    matrix[:3, 3] += matrix[:3, :3] @ offset
+    instance = Instance(mesh, matrix, shorten(placed.name))
+    extent = float(np.abs(instance.placed(mesh.bounds)).max())
+    if not extent < MAX_EXTENT:
+        raise SceneError(
+            f"instance '{instance.name}' reaches {extent:.3g} units from the origin; the limit is {MAX_EXTENT:g}"
+        )
+    return instance
+
+
+def _with_shadows(lights: list[Light], most: int | None, notes: Notes) -> list[Light]:
+    """The lights, of which only the first `most` cast shadows, and as many as shadow maps can hold."""
+    kept, tiles, without = [], 0, 0
+    for number, light in enumerate(lights):
+        needed = shadow_tiles(light)
+        shadow = light.shadow and tiles + needed <= MAX_SHADOW_TILES and (most is None or number < most)
+        tiles += needed if shadow else 0
+        if light.shadow and not shadow and (most is None or number < most):
+            without += 1
+        kept.append(replace(light, shadow=shadow))
+    if without:
+        notes.add(
+            f"{without} of its {len(lights)} lights cast no shadow: shadow maps hold {MAX_SHADOW_TILES} tiles, and a "
+            "point light takes six"
+        )
+    return kept
