@@ -24,6 +24,8 @@ from .notebook.picker import glyph_picker as glyph_picker
 from .notebook.reading import glyph as glyph
 from .pictures.sheet import contact_sheet as contact_sheet
 from .pictures.sheet import gray as gray
+from .pictures.sheet import show as show
+from .pictures.tone import shown as shown
 from .pipeline.api import render as render
 from .pipeline.frame import Frame as Frame
 from .pipeline.lab import Lab as Lab
@@ -39,5 +41,4 @@ from .scene.scene import Instance as Instance
 from .scene.scene import Scene as Scene
 from .studies import compare_modules as compare_modules
 from .truth import reference as reference
-from .truth.picture import shown as shown
 from .version import __version__ as __version__

@@ -53,6 +53,10 @@ class Lab:
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<Lab {width}x{height} on {context.renderer()}>"
+
     def reload(self) -> list[str]:
         """Compile the shaders whose files changed; returns their names.
 
