@@ -7,6 +7,7 @@ from .errors import ParameterError as ParameterError
 from .errors import SceneError as SceneError
 from .errors import ShaderError as ShaderError
 from .loading import load as load
+from .loading.named import scenes as scenes
 from .measures import Comparison as Comparison
 from .measures import compare as compare
 from .measures import relighting_error as relighting_error

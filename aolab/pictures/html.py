@@ -1,7 +1,7 @@
 """HTML for notebooks, without scripts and style sheets: it also shows on GitHub and in pages of nbconvert."""
 
 import base64
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from html import escape as escape
 from io import BytesIO
 
@@ -10,6 +10,21 @@ from PIL import Image
 
 WIDEST = 480  # pixels: the width of pictures in tabs
 CELL = "text-align: left; padding: 2px 10px; vertical-align: top"
+
+
+class Listing(dict[str, str]):
+    """Names and their descriptions: a dictionary that a notebook shows as a table."""
+
+    def __init__(self, head: str, items: Mapping[str, str]) -> None:
+        super().__init__(items)
+        self.head = head
+
+    def __repr__(self) -> str:
+        width = max(map(len, self), default=0)
+        return "\n".join(f"{name:<{width}}  {text}" for name, text in self.items())
+
+    def _repr_html_(self) -> str:
+        return table((self.head, ""), self.items())
 
 
 def png(picture: Image.Image | np.ndarray) -> bytes:

@@ -12,6 +12,7 @@ from PIL import Image
 
 from ..errors import ParameterError, suggestion
 from ..gl.texture import Pool, read
+from ..gl.thread import handed
 from ..modules.buffers import BUFFERS, Buffer
 from ..pictures import display
 from ..pictures.metadata import save_png
@@ -73,7 +74,7 @@ class Frame:
     def channels(self, name: str) -> np.ndarray:
         """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
         source = self.textures[name]
-        return source if isinstance(source, np.ndarray) else read(source)
+        return source if isinstance(source, np.ndarray) else handed(read)(source)
 
     def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
         """What `make` gives, made when first asked for under this name: what several derived buffers share."""
