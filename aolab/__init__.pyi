@@ -20,7 +20,10 @@ from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .modules.parameters import parameter as parameter
 from .modules.passes import Pass as Pass
+from .notebook.explore import explore as explore
 from .notebook.glyph import Glyph as Glyph
+from .notebook.microscope import Microscope as Microscope
+from .notebook.microscope import microscope as microscope
 from .notebook.picker import glyph_picker as glyph_picker
 from .notebook.reading import glyph as glyph
 from .pictures.sheet import contact_sheet as contact_sheet
