@@ -90,55 +90,6 @@ def own_first(parameters: type[Parameters]) -> list[str]:
     return list(dict.fromkeys([*names, *parameters.stated()]))
 
 
-def label(cls) -> str:
-        """The name that users know the class by."""
-        return str(getattr(cls, "name", "") or cls.__name__)
-
-    @classmethod
-    def stated(cls) -> dict[str, "type[Parameters]"]:
-        """{parameter: the class that states it}, in the order of their statements."""
-        return dict.fromkeys(cls.model_fields, cls)
-
-    def numbers(self) -> dict[str, Constant]:
-        """The values that a shader may take, as uniforms or as constants: words never reach a shader."""
-        own = {name: getattr(self, name) for name in type(self).model_fields}
-        return {name: value for name, value in own.items() if isinstance(value, (bool, int, float))}
-
-    def replace(self, **changes: object) -> Self:
-        """The same with some values changed, validated again."""
-        return type(self)(**{**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
-
-
-class Choice(Parameters):
-    """One alternative on an `axis` on which modules choose by name ("occluders", "filter"), with its parameters."""
-
-    axis: ClassVar[str] = ""
-    name: ClassVar[str] = ""
-
-    @classmethod
-    def label(cls) -> str:
-        return f"{cls.axis}='{cls.name}'"
-
-    def _repr_html_(self) -> str:
-        """A table of the parameters, in the order of `own_first`."""
-        cls = type(self)
-        rows = []
-        for described in (describe(cls, name) for name in own_first(cls)):
-            about = f"{described['type']}, {described['range']}".rstrip(", ")
-            name, unit, sentence = (described[key] for key in ("name", "unit", "description"))
-            rows.append((name, getattr(self, name), about, unit, sentence))
-        title = str(getattr(cls, "title", ""))
-        return html.table(("parameter", "value", "range", "unit", ""), rows, f"{label(cls)}: {title}".rstrip(": "))
-
-
-def own_first(parameters: type[Parameters]) -> list[str]:
-    """The names of the parameters: those of the class itself, then those of its nearest base class, and so on."""
-    bases = [base for base in parameters.__mro__ if issubclass(base, Parameters)]
-    return list(
-        dict.fromkeys(name for base in bases for name in base.__annotations__ if name in parameters.model_fields)
-    )
-
-
 def label(parameters: type[Parameters]) -> str:
     """The name that users know the class by."""
     return parameters.label()

@@ -37,7 +37,7 @@ def candidates(before: str) -> list[str]:
     from ..modules import MODULES
 
     named = [text for _, text in TEXT.findall(inside) if text in MODULES]
-    known = dict.fromkeys(name for module in (named[:1] or MODULES) for name in MODULES[module].model_fields)
+    known = dict.fromkeys(name for module in (named[:1] or MODULES) for name in MODULES[module].stated())
     return [f"{name}=" for name in known if not re.search(rf"\b{name}\s*=", inside)]
 
 

@@ -107,15 +107,19 @@ function render({ model, el }) {
   const panel = make("div", "width: 300px", {},
     make("div", "display: flex; gap: 6px; flex-wrap: wrap; margin-bottom: 6px", {}, modules.select, buffers.select, views.select),
     sliders);
-  const left = make("div", "flex: 0 1 auto; max-width: 100%", {},
+  const left = make("div", "flex: 0 1 auto; width: 580px; max-width: 100%", {},
     make("div", "display: flex; gap: 4px; align-items: flex-start", {}, stage, bar), status, failure, timings,
-    make("div", "display: flex; gap: 6px; margin: 4px 0", {}, code, copy), told, samples);
-  el.append(make("div", "display: flex; flex-wrap: wrap; gap: 12px", {}, left, panel));
+    make("div", "display: flex; gap: 6px; margin: 4px 0", {}, code, copy));
+  const below = make("div", "display: none", {}, told, samples);
+  el.append(make("div", "display: flex; flex-wrap: wrap; gap: 12px", {}, left, panel), below);
 
   // --- the controls of the parameters
 
   function build() {
-    sliders.replaceChildren(...statement[want.module].map(line));
+    const mine = values[want.module] ?? {};
+    const chosen = (axis) => mine[axis] ?? statement[want.module].find((control) => control.name === axis)?.default;
+    const there = statement[want.module].filter((control) => !control.with || chosen(control.with[0]) === control.with[1]);
+    sliders.replaceChildren(...there.map(line));
   }
 
   function set(control, value, moving) {
@@ -133,8 +137,10 @@ function render({ model, el }) {
     const number = make("output", "float: right");
     label.append(`${control.name}${unit} `, number);
     if (control.kind === "choice") {
-      const choice = menu(control.choices.map(String), String(value), control.name, (text) =>
-        set(control, control.choices.find((one) => String(one) === text), false));
+      const choice = menu(control.choices.map(String), String(value), control.name, (text) => {
+        set(control, control.choices.find((one) => String(one) === text), false);
+        build(); // another occluder kind or filter has other parameters
+      });
       label.append(choice.select);
     } else if (control.kind === "bool") {
       const box = make("input", "", { type: "checkbox", checked: value });
@@ -247,7 +253,7 @@ function render({ model, el }) {
         marker.style.top = `${((pixel[1] + 0.5) / reply.size[1]) * 100}%`;
       }
       told.textContent = pixel ? reply.samples ?? "" : "";
-      samples.style.visibility = pixel ? "visible" : "hidden";
+      below.style.display = pixel ? "block" : "none";
     }
     if (reply.number < sent) return;
     flying = false;

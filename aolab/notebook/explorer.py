@@ -23,7 +23,7 @@ from ..pipeline.frame import Frame
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 from ..truth import reference
-from .controls import controls
+from .controls import controls, of_choices
 from .microscope import microscope
 
 MOVING_MS = 70.0  # a frame while a control moves: at most this, so that ten frames a second reach the browser
@@ -105,7 +105,8 @@ class Explorer(anywidget.AnyWidget):
 
     def _render(self, wish: dict[str, Any], reply: dict[str, Any]) -> tuple[bytes, bytes, bytes | None]:
         moving = bool(wish.get("moving"))
-        self.module = find(wish["module"], self._modules, **wish.get("parameters", {}))
+        name = wish["module"]
+        self.module = find(name, self._modules, **of_choices(self._modules[name], wish.get("parameters", {})))
         angles = (float(wish.get(key, 0)) for key in ("azimuth", "elevation"))
         self.camera = self._home.orbited(*angles, zoom=float(wish.get("zoom", 1)))
         width, height = self.size
@@ -181,8 +182,9 @@ class Explorer(anywidget.AnyWidget):
             parts.append(f"camera=aolab.Camera(eye={eye}, target={target}, up={self.camera.up}, fov={self.camera.fov})")
         if self._accumulate > 1:
             parts.append(f"accumulate={self._accumulate}")
-        defaults = type(self.module)().model_dump()
-        parts += [f"{key}={value!r}" for key, value in self.module.model_dump().items() if value != defaults[key]]
+        stated = type(self.module).stated()
+        values = self.module.model_dump().items()
+        parts += [f"{key}={value!r}" for key, value in values if value != stated[key].model_fields[key].default]
         return f"aolab.render({', '.join(parts)})"
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:

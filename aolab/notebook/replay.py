@@ -11,10 +11,14 @@ from typing import Any
 import numpy as np
 
 from ..errors import ParameterError
-from ..gl.texture import Size
+from ..gl.texture import Size, read
+from ..gl.thread import handed
 from ..modules import MODULES
 from ..modules.marched import Marched
+from ..modules.occluders import Depth, Layers, Views
+from ..modules.parameters import Choice
 from ..pipeline.frame import Frame
+from ..pipeline.state import SurfaceState
 from ..scene.view import View
 
 F = np.float32
@@ -58,7 +62,7 @@ class Surfaces:
     """The arrays that the shader of a frame sampled, top row first, and the module's parameters."""
 
     module: Marched
-    kind: str
+    kind: Choice
     view: View
     textures: Mapping[str, np.ndarray]
     uniforms: Mapping[str, Any]
@@ -71,28 +75,27 @@ class Surfaces:
 
 def surfaces(frame: Frame) -> Surfaces:
     """The inputs of a frame's estimate. Raises `ParameterError` if no marched module of a lab rendered the frame."""
-    run = getattr(frame.kept, "run", None)
-    if run is None:
+    state = frame.kept
+    if not isinstance(state, SurfaceState):
         raise ParameterError(
             f"microscope: this frame, of {frame.info.get('module')}, was not rendered by a lab; there are no samples"
         )
-    if not isinstance(run.module, Marched):
-        marched = ", ".join(name for name, module in MODULES.items() if issubclass(module, Marched))
+    module = state.frame.module
+    if not isinstance(module, Marched):
+        marched = ", ".join(name for name, known in MODULES.items() if issubclass(known, Marched))
         raise ParameterError(
             f"microscope: the module {frame.info.get('module')} marches no directions; modules that do: {marched}, and "
             "your own that derive from aolab.modules.marched.Marched"
         )
-    from ..gl.texture import read
-    from ..gl.thread import handed
-
-    small = {name: handed(read)(texture) for name, texture in run.small.items()}
-    own = small or {name: frame.channels(name) for name in ("viewZ", "viewNormal")}
-    depths = {name: handed(read)(texture) for name, texture in run.occluders.inputs.items() if name[:-1] == "viewZ"}
-    if "layersZ" in run.occluders.inputs:
-        depths["layersZ"] = handed(read)(run.occluders.inputs["layersZ"])
-    view = run.view.scaled(run.module.scale) if run.module.scale < 1 else run.view
-    uniforms = {**view.uniforms, **run.occluders.uniforms}
-    return Surfaces(run.module, run.occluders.kind, view, {**own, **depths}, uniforms, run.seeds)
+    kind = module.chosen("occluders")
+    if type(kind) not in (Depth, Layers, Views):
+        raise ParameterError(f"microscope: the occluders '{kind.name}' are unknown; known: depth, layers, views")
+    given = state.occluders.bindings
+    wanted = {name: state.small[name] for name in ("viewZ", "viewNormal")}
+    wanted |= {name: texture for name, texture in given.textures.items() if name in ("layersZ", "viewsZ")}
+    textures = {name: handed(read)(texture) for name, texture in wanted.items()}
+    uniforms = {**state.small_view.uniforms, **given.uniforms}
+    return Surfaces(module, kind, state.small_view, textures, uniforms, state.frame.seeds)
 
 
 def replay(seen: Surfaces, pixel: tuple[int, int], seed: int) -> Samples | None:
@@ -163,10 +166,10 @@ def _blocked(seen: Surfaces, points: np.ndarray, thickness: np.floating) -> tupl
     """For points (..., 3): whether each is blocked, (...) bool, and the occluders (..., 3)."""
     uv = _uv(points, np.asarray(seen.uniforms["pixel_from_ray"], F), np.asarray(seen.uniforms["texel_size"], F))
     with np.errstate(invalid="ignore", over="ignore"):
-        if seen.kind == "depth":
+        if isinstance(seen.kind, Depth):
             z = _fetch(seen.textures["viewZ"], uv, -np.inf)
             return _within(z - points[..., 2], thickness), _on_ray(points, z)
-        if seen.kind == "layers":
+        if isinstance(seen.kind, Layers):
             layers = _fetch(seen.textures["layersZ"], uv, -np.inf)
             layer = _solid_at(layers, points[..., 2], thickness)
             z = np.take_along_axis(layers, np.maximum(layer, 0)[..., None], -1)[..., 0]
@@ -197,35 +200,29 @@ def _solid_at(layers: np.ndarray, z: np.ndarray, thickness: np.floating) -> np.n
 def _blocked_in_views(
     seen: Surfaces, points: np.ndarray, uv: np.ndarray, thickness: np.floating
 ) -> tuple[np.ndarray, np.ndarray]:
-    module = seen.module
-    ways = [np.frombuffer(seen.uniforms[name], F).reshape(4, 4, 4) for name in ("view_from_camera", "camera_from_view")]
+    kind, uniforms = seen.kind, seen.uniforms
+    assert isinstance(kind, Views)
+    ways = [np.frombuffer(uniforms[name], F).reshape(-1, 4, 4) for name in ("view_from_camera", "camera_from_view")]
     there_from_here, here_from_there = (matrices.transpose(0, 2, 1) for matrices in ways)
-    pixel_from_ray = np.asarray(seen.uniforms["views_pixel_from_ray"], F)
-    texel_size = np.asarray(seen.uniforms["views_texel_size"], F)
+    tile_from_ray, tile_half = (np.asarray(uniforms[name], F) for name in ("tile_from_ray", "tile_half"))
     z = _fetch(seen.textures["viewZ"], uv, -np.inf)
     on_screen = (np.abs(uv - F(0.5)) < F(0.5)).all(axis=-1)
     behind = np.where(on_screen, z - points[..., 2], UNKNOWN).astype(F)
+    share = np.where(on_screen, F(1), F(1) - F(2) * F(uniforms["view_pixel_width"])).astype(F)
     inside_solid = np.zeros(behind.shape, bool)
     nearest = _on_ray(points, z)
-    for k in range(1, module.views + 1):
-        matrix = there_from_here[k - 1]
-        there = (points @ matrix[:3, :3].T + matrix[:3, 3]).astype(F)
-        depths = _fetch(seen.textures[f"viewZ{k}"], _uv(there, pixel_from_ray, texel_size), np.inf)
-        if module.view_layers > 1:
-            depths = _beyond(depths)
-            inside_solid |= _solid_at(depths, there[..., 2], thickness) >= 0
+    for k, (there_matrix, here_matrix) in enumerate(zip(there_from_here, here_from_there, strict=True)):
+        there = (points @ there_matrix[:3, :3].T + there_matrix[:3, 3]).astype(F)
+        in_tile = _uv(there, tile_from_ray, np.ones(2, F))
+        in_picture = np.abs(in_tile).max(axis=-1) < 1
+        tile = np.array((2 * (k & 1) + 1, 2 * (k >> 1) + 1), F)
+        depths = _fetch(seen.textures["viewsZ"], ((in_tile + tile) * tile_half).astype(F), -np.inf)
+        if kind.view_layers > 1:
+            inside_solid |= in_picture & (_solid_at(depths, there[..., 2], thickness) >= 0)
             depths = depths[..., 0]
-        here = depths - there[..., 2]
-        here = np.where(on_screen, here, here + F(2) * there[..., 2] / pixel_from_ray[0]).astype(F)
+        here = np.where(in_picture, depths - share * there[..., 2], UNKNOWN).astype(F)
         closer = here < behind
         behind = np.where(closer, here, behind)
-        matrix = here_from_there[k - 1]
-        back = _on_ray(there, depths) @ matrix[:3, :3].T + matrix[:3, 3]
+        back = _on_ray(there, depths) @ here_matrix[:3, :3].T + here_matrix[:3, 3]
         nearest = np.where(closer[..., None], back, nearest).astype(F)
-    return (inside_solid & (behind > 0) if module.view_layers > 1 else _within(behind, thickness)), nearest
-
-
-def _beyond(depths: np.ndarray) -> np.ndarray:
-    """Off a view's picture the border is (+inf, +inf, -inf, -inf) (`pipeline.surfaces.border_samplers`)."""
-    outside = np.isposinf(depths).all(axis=-1, keepdims=True)
-    return np.where(outside, np.array([np.inf, np.inf, -np.inf, -np.inf], F), depths).astype(F)
+    return (inside_solid & (behind > 0) if kind.view_layers > 1 else _within(behind, thickness)), nearest

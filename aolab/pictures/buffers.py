@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 from ..errors import ParameterError
 from .tone import shown, srgb
 
-SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce")  # in [0, 1], shown in grey
+SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share")  # in [0, 1], shown in grey
 RADIANCE = ("direct", "ambient", "indirect", "radiance", "irradiance", "bounce", "sender")  # linear RGB
 DIRECTIONS = ("viewNormal", "bent_normal")  # components in [-1, 1]
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
@@ -49,10 +49,10 @@ def scale_of(name: str, values: np.ndarray) -> Scale | None:
     Shares have the scale 0 to 1. Other numbers: between their percentiles 1 and 99, around 0 if they have both signs.
     """
     kind = name.removesuffix("_raw")
-    if kind in SHARES:
-        return Scale(0.0, 1.0, "gray")
     if values.dtype == np.uint8 or (values.ndim == 3 and values.shape[2] == 3):
         return None
+    if kind in SHARES:
+        return Scale(0.0, 1.0, "gray")
     finite = values[np.isfinite(values)]
     low, high = np.percentile(finite, (1, 99)).tolist() if finite.size else (0.0, 1.0)
     if low < 0 < high:

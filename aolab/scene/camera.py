@@ -1,8 +1,7 @@
 """The camera: a pinhole, right-handed, y up; view space looks down -z."""
 
-from dataclasses import dataclass
-from functools import cached_property
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 

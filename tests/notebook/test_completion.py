@@ -24,7 +24,7 @@ def test_modules_and_scenes_are_listed():
 @pytest.mark.parametrize("module", MODULES)
 def test_a_call_offers_the_parameters_of_its_module(module):
     offered = candidates(f'frame = lab.render(scene, "{module}", size=(64, 48), ')
-    assert offered == [f"{name}=" for name in MODULES[module].model_fields]
+    assert offered == [f"{name}=" for name in MODULES[module].stated()]
 
 
 def test_a_given_parameter_is_not_offered_again():

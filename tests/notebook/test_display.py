@@ -9,9 +9,9 @@ from PIL import Image
 
 import aolab
 from aolab import Frame, ParameterError
-from aolab.modules import MODULES
+from aolab.modules import MODULES, known_buffers
 from aolab.modules.parameters import own_first
-from aolab.pictures import html
+from aolab.pictures import buffers, html
 from aolab.pictures.buffers import BACKGROUND, Scale, buffer_picture, buffer_pixels, scale_of
 
 
@@ -135,7 +135,14 @@ def test_a_module_is_a_table_with_its_own_parameters_first():
         assert f">{name}<" in text
     assert own_first(aolab.SSDO)[0] == "bounces"
     assert own_first(aolab.SSDO).index("directions") < own_first(aolab.SSDO).index("occluders")
-    assert sorted(own_first(aolab.SSDO)) == sorted(aolab.SSDO.model_fields)
+    assert sorted(own_first(aolab.SSDO)) == sorted(aolab.SSDO.stated())
+
+
+def test_pictures_and_the_table_of_buffers_agree():
+    for name, about in known_buffers().items():
+        assert (name in buffers.RADIANCE) == (about.kind == "radiance" or about.unit == "irradiance"), name
+        assert (name in buffers.DIRECTIONS) == (about.kind == "direction"), name
+        assert (name in (*buffers.SHARES, "albedo")) == (about.kind == "share"), name
 
 
 def test_a_scene_is_a_picture_and_a_table_of_its_meshes(lab):

@@ -233,7 +233,10 @@ def test_hidden_senders_bounce(lab):
     scene, size = hidden_back(), (128, 96)
     settings = {"radius": 1.2, "bounces": 1, "senders": "rays", "size": size, **CONVERGED}
     one_layer = lab.render(scene, "ssdo", **settings)
-    frames = [lab.render(scene, "ssdo", **kind, **settings) for kind in ({"occluders": "layers"}, {"occluders": "views", "view_scale": 1.0})]
+    frames = [
+        lab.render(scene, "ssdo", **kind, **settings)
+        for kind in ({"occluders": "layers"}, {"occluders": "views", "view_scale": 1.0})
+    ]
     truth = aolab.reference(scene, size=size, like=aolab.SSDO(radius=1.2), buffers="indirect", cache=False)
     _, y, z = np.moveaxis(world_positions(one_layer, scene.camera), -1, 0)
     behind = (np.abs(y) < 1e-3) & (z < -0.3) & (z > -1.0) & (truth["indirect"][..., 0] > 0.05 * truth["indirect"].max())
