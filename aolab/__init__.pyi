@@ -7,6 +7,7 @@ from .errors import ParameterError as ParameterError
 from .errors import SceneError as SceneError
 from .errors import ShaderError as ShaderError
 from .loading import load as load
+from .loading.named import scenes as scenes
 from .measures import Comparison as Comparison
 from .measures import compare as compare
 from .measures import relighting_error as relighting_error
@@ -19,11 +20,16 @@ from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .modules.parameters import parameter as parameter
 from .modules.passes import Pass as Pass
+from .notebook.explore import explore as explore
 from .notebook.glyph import Glyph as Glyph
+from .notebook.microscope import Microscope as Microscope
+from .notebook.microscope import microscope as microscope
 from .notebook.picker import glyph_picker as glyph_picker
 from .notebook.reading import glyph as glyph
 from .pictures.sheet import contact_sheet as contact_sheet
 from .pictures.sheet import gray as gray
+from .pictures.sheet import show as show
+from .pictures.tone import shown as shown
 from .pipeline.api import render as render
 from .pipeline.frame import Frame as Frame
 from .pipeline.lab import Lab as Lab
@@ -39,5 +45,4 @@ from .scene.scene import Instance as Instance
 from .scene.scene import Scene as Scene
 from .studies import compare_modules as compare_modules
 from .truth import reference as reference
-from .truth.picture import shown as shown
 from .version import __version__ as __version__

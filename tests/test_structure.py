@@ -27,7 +27,7 @@ def imported(path: Path) -> set[Path]:
     return found
 
 
-@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize("name", [name for name in FILES if name != "__init__.py"])  # the face names all folders
 def test_a_file_imports_from_its_folder_and_from_those_below(name):
     place = Path(name).parts[0] if "/" in name else ""
     for file in imported(FILES[name]):

@@ -1,5 +1,6 @@
 """The one OpenGL context of this process: made when first needed, used by the thread that made it, released on exit."""
 
+import asyncio
 import atexit
 import ctypes
 import os
@@ -24,6 +25,7 @@ class _State:
     context: moderngl.Context | None = None
     thread: int = 0
     process: int = 0
+    loop: asyncio.AbstractEventLoop | None = None  # of that thread, if it runs one
 
 
 _state = _State()
@@ -34,6 +36,7 @@ def get() -> moderngl.Context:
     if _state.context is None:
         _state.context = _create()
         _state.thread, _state.process = threading.get_ident(), os.getpid()
+        _state.loop = asyncio._get_running_loop()
         atexit.register(release)
     elif os.getpid() != _state.process:
         raise ContextError(
@@ -43,9 +46,15 @@ def get() -> moderngl.Context:
     elif threading.get_ident() != _state.thread:
         raise ContextError(
             "aolab's OpenGL context belongs to the thread that rendered first; render and read buffers in that thread, "
-            "or use a worker process (multiprocessing.get_context('spawn')) for each parallel render"
+            "or use a worker process (multiprocessing.get_context('spawn')) for each parallel render. In a notebook, "
+            "render once in a cell before callbacks of widgets do"
         )
     return _state.context
+
+
+def owner() -> _State | None:
+    """The thread of this process's context, and its event loop; None if there is no context."""
+    return _state if _state.context is not None and _state.process == os.getpid() else None
 
 
 def release() -> None:

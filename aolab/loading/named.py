@@ -15,6 +15,7 @@ from urllib.parse import quote, unquote
 
 from .. import paths
 from ..errors import Error, FileError, ParameterError, SceneError, suggestion
+from ..pictures.html import Listing
 from ..scene.scene import Scene
 
 TRUTHS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
@@ -32,6 +33,11 @@ class SceneDescription:
 def scene_names() -> list[str]:
     """The names of the scenes in `scenes/`, sorted."""
     return sorted(path.stem for path in paths.scenes().glob("[!_]*.py") if path.stem.isidentifier())
+
+
+def scenes() -> Listing:
+    """The names of the scenes in `scenes/` and their summaries; a notebook shows a table."""
+    return Listing("scene", {name: describe_scene(name).summary for name in scene_names()})
 
 
 def describe_scene(name: str) -> SceneDescription:

@@ -1,12 +1,10 @@
 """`aolab.compare`: two results, buffer by buffer and region by region."""
 
-import base64
 import json
 import math
 import warnings
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, fields
-from io import BytesIO
 from os import PathLike
 from typing import Any
 
@@ -15,6 +13,7 @@ from PIL import Image
 
 from ..errors import Notice, ParameterError, suggestion
 from ..output import replacing
+from ..pictures import display, html
 from .buffer import BufferComparison
 from .metrics import Measures, angles, differences, psnr
 from .pairing import Buffers, common, label, regions, size_of
@@ -82,13 +81,13 @@ class Comparison:
         return f"<Comparison {self.names[0]} against {self.names[1]}: {found}>"
 
     def _repr_png_(self) -> bytes:
-        data = BytesIO()
-        self.picture().save(data, "PNG")
-        return data.getvalue()
+        return html.png(self.picture())
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return list(self.buffers)
 
     def _repr_html_(self) -> str:
-        png = base64.b64encode(self._repr_png_()).decode()
-        return f'<pre>{self}</pre><img alt="error" src="data:image/png;base64,{png}">'
+        return display.comparison_html(self)
 
 
 def compare(

@@ -1,5 +1,10 @@
-"""The methods: one file each. This table is all the registry there is."""
+"""The methods: one file each. This table is all the registry there is. `aolab.modules()` lists it."""
 
+import sys
+from types import ModuleType
+from typing import Literal
+
+from ..pictures.html import Listing
 from .base import Module, find
 from .buffers import BUFFERS, Buffer
 from .none import Unoccluded
@@ -16,4 +21,15 @@ def known_buffers() -> dict[str, Buffer]:
     return BUFFERS | {row.name: row for module in MODULES.values() for row in module.buffers}
 
 
-__all__ = ["MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "Unoccluded", "find", "known_buffers"]
+ModuleName = Literal["none", "ssao", "ssdo", "s3ho", "ssbn"]  # the same names, for editors; a test compares them
+
+
+class _Callable(ModuleType):
+    def __call__(self) -> Listing:
+        """The names of the modules and their titles; a notebook shows a table."""
+        return Listing("module", {name: module.title for name, module in MODULES.items()})
+
+
+sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
+
+__all__ = ["MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "ModuleName", "Unoccluded", "find", "known_buffers"]

@@ -6,6 +6,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ..errors import ParameterError, suggestion
 from ..gl.source import Constant
+from ..pictures import html
 
 AUTO = "auto"
 
@@ -61,6 +62,15 @@ class Parameters(BaseModel):
         """The same with some values changed, validated again."""
         return type(self)(**{**{name: getattr(self, name) for name in type(self).model_fields}, **changes})
 
+    def _repr_html_(self) -> str:
+        """A table of the parameters, in the order of `own_first`."""
+        cls, values, rows = type(self), self.model_dump(), []
+        for about in (describe(cls, name) for name in own_first(cls)):
+            within = ", ".join(part for part in (about["type"], about["range"], about["with"]) if part)
+            rows.append((about["name"], values.get(about["name"], "-"), within, about["unit"], about["description"]))
+        title = str(getattr(cls, "title", ""))
+        return html.table(("parameter", "value", "range", "unit", ""), rows, f"{label(cls)}: {title}".rstrip(": "))
+
 
 class Choice(Parameters):
     """One alternative on an `axis` on which modules choose by name ("occluders", "filter"), with its parameters."""
@@ -71,6 +81,13 @@ class Choice(Parameters):
     @classmethod
     def label(cls) -> str:
         return f"{cls.axis}='{cls.name}'"
+
+
+def own_first(parameters: type[Parameters]) -> list[str]:
+    """The names of the parameters: those of the class, of its nearest base class, and so on; then those of choices."""
+    bases = [base for base in parameters.__mro__ if issubclass(base, Parameters)]
+    names = [name for base in bases for name in base.__annotations__ if name in parameters.model_fields]
+    return list(dict.fromkeys([*names, *parameters.stated()]))
 
 
 def label(parameters: type[Parameters]) -> str:

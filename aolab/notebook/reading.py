@@ -30,7 +30,7 @@ def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
     a pixel outside the image or in the background.
     """
     scene = lit_scene(frame)
-    column, row = _inside(pixel, frame.size)
+    column, row = inside(pixel, frame.size)
     here = Frame(_Texels(frame, column, row), {}, frame.info, derived=frame.derived)
     if not here.mask[0, 0]:
         raise ParameterError(f"glyph: pixel ({column}, {row}) is in the background; frame.mask is True at surfaces")
@@ -75,17 +75,17 @@ def lit_scene(frame: Frame) -> Scene:
     return frame.scene
 
 
-def _inside(pixel: tuple[int, int], size: Size) -> tuple[int, int]:
+def inside(pixel: tuple[int, int], size: Size, caller: str = "glyph") -> tuple[int, int]:
     """`pixel` as Python integers (column, row); NumPy integers are accepted. Raises `ParameterError` if outside."""
     width, height = size
     try:
         column, row = map(operator.index, pixel)
-        inside = 0 <= column < width and 0 <= row < height
+        found = 0 <= column < width and 0 <= row < height
     except (TypeError, ValueError):
-        column, row, inside = 0, 0, False
-    if not inside:
+        column, row, found = 0, 0, False
+    if not found:
         raise ParameterError(
-            f"glyph: pixel = {pixel!r} is not a (column, row) of this image, {width}x{height}: "
+            f"{caller}: pixel = {pixel!r} is not a (column, row) of this image, {width}x{height}: "
             f"columns are 0 to {width - 1}, rows 0 to {height - 1}, from the top left"
         )
     return column, row

@@ -1,13 +1,12 @@
 """The Python side of the widget `aolab.glyph_picker`. The browser side is widget.js."""
 
-import asyncio
-import threading
 from pathlib import Path
 
 import anywidget
 import traitlets
 
 from ..errors import Error
+from ..gl.thread import handed, post
 from ..pipeline.frame import Frame
 from .glyph import Glyph
 from .reading import glyph, lit_scene
@@ -25,24 +24,13 @@ class GlyphPicker(anywidget.AnyWidget):
     picture = traitlets.Bytes().tag(sync=True)
     message = traitlets.Unicode(HINT).tag(sync=True)
 
+    @handed
     def __init__(self, frame: Frame) -> None:
         lit_scene(frame)  # raises at once if no pixel of this frame can have a glyph
         super().__init__(image=frame._repr_png_())
         self.frame = frame
         self.glyph: Glyph | None = None
-        self._thread = threading.get_ident()
-        try:
-            self._loop = asyncio.get_running_loop()
-        except RuntimeError:  # not in a notebook
-            self._loop = None
-        self.observe(self._picked, names="pixel")
-
-    def _picked(self, _: object) -> None:
-        """JupyterLab may call this in another thread, but the OpenGL context belongs to the thread that rendered."""
-        if self._loop is None or threading.get_ident() == self._thread:
-            self._show()
-        else:
-            self._loop.call_soon_threadsafe(self._show)
+        self.observe(lambda _: post(self._show), names="pixel")
 
     def _show(self) -> None:
         try:

@@ -1,9 +1,14 @@
 """Contact sheets (pictures side by side with captions), and tables drawn as pictures."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
+
+from ..errors import ParameterError
+from .buffers import buffer_picture, buffer_pixels, first_buffer, framed, scale_of
+from .display import pixels_of, titled
 
 MARGIN, CAPTION, LINE, CELL = 8, 26, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
 _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
@@ -15,13 +20,20 @@ def gray(values: np.ndarray) -> np.ndarray:
     return np.repeat((scaled + 0.5).astype(np.uint8)[..., None], 3, axis=2)
 
 
-def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, *, title: str = "") -> Image.Image:
+def contact_sheet(pictures: Sequence[Any], columns: int = 2, *, title: str = "") -> Image.Image:
     """A sheet of captioned pictures in rows of `columns`, under a `title`.
 
-    `pictures`: (caption, picture) pairs; the pictures are (H, W, 3) uint8, all of the same size.
+    `pictures`: frames, images and arrays (H, W, 3) uint8, or (caption, picture) pairs of these. A frame without a
+    caption gets the name of its module; a frame without an image shows its first buffer. Smaller pictures are
+    enlarged by whole numbers as far as they fit. Raises `ParameterError` for anything else, and for no pictures.
     """
-    height, width = pictures[0][1].shape[:2]
-    rows = -(-len(pictures) // columns)
+    pairs = [item if isinstance(item, tuple) else (titled(item, number), item) for number, item in enumerate(pictures)]
+    if not pairs:
+        raise ParameterError("a contact sheet needs at least one picture")
+    cells = [(caption, pixels_of(picture)) for caption, picture in pairs]
+    height, width = (max(pixels.shape[axis] for _, pixels in cells) for axis in (0, 1))
+    columns = min(columns, len(cells))
+    rows = -(-len(cells) // columns)
     cell = width + MARGIN, height + CAPTION + MARGIN
     font = ImageFont.load_default(size=15)
     lines = _wrapped(title, columns * cell[0] - MARGIN, font)
@@ -30,11 +42,37 @@ def contact_sheet(pictures: Sequence[tuple[str, np.ndarray]], columns: int = 2, 
     draw = ImageDraw.Draw(sheet)
     for number, line in enumerate(lines):
         draw.text((MARGIN + 2, MARGIN + number * LINE), line, _INK, font=font)
-    for index, (caption, picture) in enumerate(pictures):
+    for index, (caption, pixels) in enumerate(cells):
         x, y = MARGIN + index % columns * cell[0], top + index // columns * cell[1]
-        sheet.paste(Image.fromarray(picture), (x, y))
+        enlarged = max(1, min(width // pixels.shape[1], height // pixels.shape[0]))
+        sheet.paste(Image.fromarray(pixels.repeat(enlarged, axis=0).repeat(enlarged, axis=1)), (x, y))
         draw.text((x + 2, y + height + 4), caption, _INK, font=font)
     return sheet
+
+
+def show(*pictures: Any, buffer: str = "", columns: int = 3, **named: Any) -> Image.Image:
+    """Frames side by side, all with the same `buffer` and one colour bar.
+
+    >>> aolab.show(frame, truth)
+    >>> aolab.show(frame, truth=truth, buffer="visibility")
+
+    The default buffer is the image, if every frame has one, or else the first buffer that all frames have. A keyword
+    is the caption of its frame; other captions are the modules' names. Images and arrays (H, W, 3) uint8 may stand
+    beside frames. Raises `ParameterError` if a frame lacks the buffer.
+    """
+    pairs = [*((titled(frame, number), frame) for number, frame in enumerate(pictures)), *named.items()]
+    frames = [frame for _, frame in pairs if hasattr(frame, "buffers")]
+    if not frames:
+        return contact_sheet(pairs, columns)
+    name = buffer or first_buffer(set.intersection(*(set(frame.buffers) for frame in frames)))
+    values = [frame[name] for frame in frames]
+    if any(one.ndim == 3 and one.shape[2] not in (1, 3) for one in values):  # panels, each with its own bar
+        scale, draw = None, lambda frame: buffer_picture(name, frame[name])
+    else:
+        scale = scale_of(name, np.concatenate([one.reshape(-1, *one.shape[2:]) for one in values])[None])
+        draw = lambda frame: buffer_pixels(name, frame[name], scale)  # noqa: E731
+    cells = [(caption, draw(one) if hasattr(one, "buffers") else one) for caption, one in pairs]
+    return framed(np.asarray(contact_sheet(cells, columns)), scale, name)
 
 
 def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:

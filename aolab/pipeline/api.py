@@ -4,7 +4,7 @@ from functools import cache
 from typing import Any
 
 from ..gl.texture import Size
-from ..modules import Module
+from ..modules import Module, ModuleName
 from ..scene.camera import Camera
 from .frame import Frame
 from .lab import DEFAULT_SIZE, Lab
@@ -19,7 +19,7 @@ def shared_lab() -> Lab:
 
 def render(
     scene: Any,
-    module: str | Module | type[Module] = "ssao",
+    module: ModuleName | str | Module | type[Module] = "ssao",
     *,
     size: Size = DEFAULT_SIZE,
     camera: Camera | None = None,

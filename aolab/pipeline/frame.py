@@ -1,9 +1,8 @@
 """What a render gives back: every buffer by name, read when asked for, and the image."""
 
 import weakref
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from io import BytesIO
 from os import PathLike
 from typing import Any, Self, TypeVar
 
@@ -13,7 +12,9 @@ from PIL import Image
 
 from ..errors import ParameterError, suggestion
 from ..gl.texture import Pool, read
+from ..gl.thread import handed
 from ..modules.buffers import BUFFERS, Buffer
+from ..pictures import display
 from ..pictures.metadata import save_png
 from ..scene.camera import Camera
 from ..scene.scene import Scene
@@ -73,7 +74,7 @@ class Frame:
     def channels(self, name: str) -> np.ndarray:
         """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
         source = self.textures[name]
-        return source if isinstance(source, np.ndarray) else read(source)
+        return source if isinstance(source, np.ndarray) else handed(read)(source)
 
     def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
         """What `make` gives, made when first asked for under this name: what several derived buffers share."""
@@ -125,10 +126,33 @@ class Frame:
         known = {key: self.info[key] for key in keys if key in self.info}
         return {**known, "timings": self.timings, "frame_ms": self.frame_ms, "notes": self.notes}
 
+    def show(self, buffer: str = "") -> Image.Image:
+        """A picture of a buffer, with a colour bar. The default is the image, or else the frame's first buffer."""
+        return display.frame_picture(self, buffer)
+
+    def keys(self) -> list[str]:
+        """The names of the buffers, for `dict(frame)`."""
+        return self.buffers
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.buffers)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.buffers
+
+    def _ipython_key_completions_(self) -> list[str]:
+        return self.buffers
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The state for pickle: every buffer as an array. The pickled frame can be compared, but not lit again."""
+        arrays = {name: self[name] for name in self.buffers}
+        return {**self.__dict__, "textures": arrays, "derived": {}, "kept": None, "_arrays": dict(arrays)}
+
     def _repr_png_(self) -> bytes:
-        data = BytesIO()
-        Image.fromarray(self.image).save(data, "PNG")
-        return data.getvalue()
+        return display.frame_png(self)
+
+    def _repr_html_(self) -> str:
+        return display.frame_html(self)
 
     def __repr__(self) -> str:
         width, height = self.size

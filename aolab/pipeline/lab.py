@@ -13,7 +13,8 @@ from ..gl import context
 from ..gl.bindings import Bindings
 from ..gl.program import Programs
 from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
-from ..modules import MODULES, Module, find
+from ..gl.thread import handed
+from ..modules import MODULES, Module, ModuleName, find
 from ..modules.buffers import BUFFERS
 from ..modules.occluders import OccluderKind
 from ..modules.occluders.base import Occluders
@@ -44,6 +45,7 @@ class Lab:
     one that does not compile raises once, and then the last good program is used until the next edit.
     """
 
+    @handed
     def __init__(self, size: Size = DEFAULT_SIZE, *, watch: bool = False) -> None:
         self.size = size
         self.watch = watch
@@ -53,6 +55,12 @@ class Lab:
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
+    @handed
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<Lab {width}x{height} on {context.renderer()}>"
+
+    @handed
     def reload(self) -> list[str]:
         """Compile the shaders whose files changed; returns their names.
 
@@ -60,10 +68,11 @@ class Lab:
         """
         return self._programs.reload(only_changed=True)
 
+    @handed
     def render(
         self,
         scene: Any,
-        module: str | Module | type[Module] = "ssao",
+        module: ModuleName | str | Module | type[Module] = "ssao",
         *,
         camera: Camera | None = None,
         size: Size | None = None,
@@ -97,6 +106,7 @@ class Lab:
             warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
         return frame
 
+    @handed
     def relight(
         self,
         frame: Frame,

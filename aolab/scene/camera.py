@@ -95,6 +95,27 @@ class Camera:
         project = perspective if self.ortho is None else orthographic
         return project(*self.half_extent(size), near, far)
 
+    def orbited(self, azimuth: float = 0.0, elevation: float = 0.0, zoom: float = 1.0) -> "Camera":
+        """The camera with its eye turned around the target: `azimuth` degrees to the right, `elevation` degrees up.
+
+        `zoom` divides the distance. The eye stays at least 1 degree away from the poles of `up`. Raises `SceneError`
+        if `zoom` is not above 0.
+        """
+        if not 0 < zoom < np.inf:
+            raise SceneError(f"camera: zoom = {zoom} is not a number above 0")
+        target, up = np.asarray(self.target), np.asarray(self.up) / np.linalg.norm(self.up)
+        away = np.subtract(self.eye, target)
+        distance = np.linalg.norm(away)
+        height = np.arcsin(np.clip(away @ up / distance, -1, 1))
+        ahead = away - (away @ up) * up
+        ahead /= np.linalg.norm(ahead)
+        turn = np.radians(azimuth)
+        ahead = np.cos(turn) * ahead + np.sin(turn) * np.cross(up, ahead)
+        limit = np.radians(89.0)
+        height = np.clip(height + np.radians(elevation), -limit, limit)
+        eye = target + (np.cos(height) * ahead + np.sin(height) * up) * distance / zoom
+        return replace(self, eye=tuple(eye.tolist()))
+
     @classmethod
     def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":
         """A camera that sees all of `bounds` (2, 3) in a picture of any shape, from `direction` as seen from their

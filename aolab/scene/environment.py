@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import Notice, SceneError
 from ..input import Budget
 from ..maths.harmonics import evaluate, irradiance, project
+from ..pictures import display
 from .camera import Vec3
 
 HALF_MAX = 65504.0  # the largest finite float16 (IEEE 754 binary16), which HDR files and textures hold
@@ -57,6 +58,13 @@ class Environment:
         self._repair(radiance)
         radiance.flags.writeable = False
         object.__setattr__(self, "radiance", radiance)
+
+    def __repr__(self) -> str:
+        height, width = self.radiance.shape[:2]
+        return f"<Environment '{self.name}': {width}x{height}, radiance up to {self.radiance.max():.3g}>"
+
+    def _repr_png_(self) -> bytes:
+        return display.environment_png(self.radiance)
 
     def _repair(self, radiance: np.ndarray) -> None:
         if radiance.min() >= 0 and radiance.max() < np.inf:  # a NaN makes this false

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..errors import Notice, SceneError
 from ..maths.local_maxima import AXES, mean_nearest_distance
+from ..pictures import display
 from .camera import Camera
 from .environment import Environment
 from .lights import DirectionalLight, Light
@@ -176,6 +177,17 @@ class Scene:
         for instance in self.instances:
             parts.append(instance.placed(instance.mesh.vertices)[instance.mesh.faces])
         return np.concatenate(parts)
+
+    def __repr__(self) -> str:
+        lights = ", ".join(type(light).__name__ for light in self.lights) or "no lights"
+        meshes = len({id(instance.mesh) for instance in self.instances})
+        return f"<Scene '{self.name}': {self.triangles} triangles, {meshes} meshes, {lights}, {self.environment!r}>"
+
+    def _repr_html_(self) -> str:
+        """A small render, and a table of the meshes."""
+        from .. import render  # a render needs the folders above this one; the package's face provides it
+
+        return display.scene_html(self, render(self, "ssao", size=display.PREVIEW).image)
 
     def replace(self, **changes: object) -> "Scene":
         """The same scene with other lights, environment, camera, ...; meshes stay where they are on the GPU.

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..pictures.tone import shown as shown
 from ..scene.environment import Environment
 from ..scene.view import View
 from .lighting import environment_radiance
@@ -22,11 +23,3 @@ def over_environment(radiance: np.ndarray, mask: np.ndarray, environment: Enviro
     result = radiance.copy()
     result[~mask] = environment_radiance(environment, behind)
     return result
-
-
-def shown(radiance: np.ndarray) -> np.ndarray:
-    """(H, W, 3) uint8 sRGB: the filmic curve at exposure 1, as a render shows itself by default."""
-    curve = radiance * (2.51 * radiance + 0.03) / (radiance * (2.43 * radiance + 0.59) + 0.14)
-    linear = curve.clip(0, 1)
-    encoded = np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
-    return np.round(encoded * 255).astype(np.uint8)
