@@ -1,13 +1,16 @@
-// S3HO, the senders of one bounce: each occluder passes on the distant light that it reflects, whatever that will be.
+// S3HO, the senders of one bounce: each occluder reflects distant light that is not known yet.
 // Herholz et al. 2012, Eq. 5:
 //   c_SSGI(P) = Σ f(P, o_i) ρ_i/π c_cos(n_i)
-// with the form factor of lib/senders.glsl. The cosine lobe ends with band 2: 9 coefficients, each red, green and blue.
+// with the form factor of lib/senders.glsl. An occluder reflects as much as it blocks (s3ho.blocked.glsl). The clamped
+// cosine has no band 3, so that 9 coefficients are enough: each is red, green and blue.
 //
 // Inputs:  viewZ, viewNormal; sender, here the albedo of each surface.
-// Outputs: bounce0 to bounce6: rgb coefficients 0 to 6, view space; the alphas of 0 to 2 hold the rgb of coefficient 7,
-//          those of 3 to 5 that of 8.
+// Outputs: bounce0 to bounce6: rgb coefficients 0 to 6, view space; the alphas of 0 to 2 are the rgb of coefficient 7,
+//          those of 3 to 5 the rgb of coefficient 8, and that of 6 is Σ w_i |d_i|².
+//          sender_offset: rgb Σ w_i d_i, a Σ w_i, where w_i is the form factor of occluder i and d_i its offset from P, view
+//          space, in radii: s3ho.indirect.frag looks the lights' shadows up there.
 
-#include "lib/march.glsl"
+#include "s3ho.blocked.glsl"
 #include "lib/senders.glsl"
 #include "lib/sh.glsl"
 
@@ -18,20 +21,27 @@ layout(location = 3) out vec4 bounce3;
 layout(location = 4) out vec4 bounce4;
 layout(location = 5) out vec4 bounce5;
 layout(location = 6) out vec4 bounce6;
+layout(location = 7) out vec4 sender_offset;
 
 void main() {
     Receiver receiver;
-    bounce0 = bounce1 = bounce2 = bounce3 = bounce4 = bounce5 = bounce6 = vec4(0.0);
+    bounce0 = bounce1 = bounce2 = bounce3 = bounce4 = bounce5 = bounce6 = sender_offset = vec4(0.0);
     if (!receiverHere(receiver)) return;
 
     vec3 sum[9] = vec3[9](vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0), vec3(0));
+    float squaredOffset = 0.0;
     for (int i = 0; i < directions; ++i) {
         Occluder first;
-        if (!isWayBlocked(receiver, i, first)) continue;
+        float blocked = blockedShare(receiver, i, first);
+        if (blocked == 0.0) continue;
         vec3 normal = occluderNormal(first);
-        vec3 reflected = occluderRadiance(first) / PI * formFactor(receiver, first, normal);
+        float weight = blocked * formFactor(receiver, i, first, normal);
+        vec3 reflected = occluderRadiance(first) / PI * weight;
         mat4 lobe = shClampedCosine(normal);
         for (int k = 0; k < 9; ++k) sum[k] += reflected * lobe[k / 4][k % 4];
+        vec3 offset = (first.viewPos - receiver.viewPos) / radius;
+        sender_offset += weight * vec4(offset, 1.0);
+        squaredOffset += weight * dot(offset, offset);
     }
     bounce0 = vec4(sum[0], sum[7].r);
     bounce1 = vec4(sum[1], sum[7].g);
@@ -39,5 +49,5 @@ void main() {
     bounce3 = vec4(sum[3], sum[8].r);
     bounce4 = vec4(sum[4], sum[8].g);
     bounce5 = vec4(sum[5], sum[8].b);
-    bounce6 = vec4(sum[6], 0.0);
+    bounce6 = vec4(sum[6], squaredOffset);
 }

@@ -19,8 +19,8 @@ void main() {
     vec3 sum = vec3(0.0);
     for (int i = 0; i < directions; ++i) {
         Occluder first;
-        if (!isWayBlocked(receiver, i, first)) continue;
-        sum += occluderRadiance(first) * formFactor(receiver, first, occluderNormal(first));
+        if (firstBlocked(receiver, i, first) == OPEN) continue;
+        sum += occluderRadiance(first) * formFactor(receiver, i, first, occluderNormal(first));
     }
     bounce = vec4(sum, 1.0);
 }

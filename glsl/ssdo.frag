@@ -1,11 +1,12 @@
-// SSDO, direct light: the environment's light from the open directions only.
+// SSDO, direct light: the environment's light from the open directions.
 // Ritschel, Grosch and Seidel 2009, "Approximating Dynamic Global Illumination in Image Space", section 3:
 //   L_dir(P) = Σ ρ/π L_in(ω_i) V(ω_i) cosθ_i Δω
-// Here the directions have the density cosθ/π, so that cosθ_i Δω is π/N for each; the paper's are uniform. Under a
-// constant sky this is exactly SSAO with the same samples; on an open plane, exactly ρ L. ρ/π waits for the lighting.
+// Here the directions have the density cosθ/π, so that cosθ_i Δω is π/N for each, and the sum is ρ times the mean of
+// V L_in; the paper's directions are uniform. The albedo ρ enters in ssdo.ambient.frag.
 //
 // Inputs:  viewZ, viewNormal; prefiltered_environment, an octahedral map blurred to a sample's solid angle.
-// Output:  irradiance: rgb the environment's irradiance with occlusion, a the visibility in [0, 1].
+// Outputs: open_light: rgb the mean over all directions of V L_in, linear radiance; a the visibility in [0, 1].
+//          all_light:  rgb the mean of L_in; only `estimator="blocked"` reads it.
 
 #include "lib/march.glsl"
 #include "lib/octahedral.glsl"
@@ -13,20 +14,24 @@
 uniform sampler2D prefiltered_environment;
 uniform mat4 world_from_view;
 
-out vec4 irradiance;
+layout(location = 0) out vec4 open_light;
+layout(location = 1) out vec4 all_light;
+
+const float LARGEST = 65504.0;  // of half floats, which the outputs are
 
 void main() {
     Receiver receiver;
-    irradiance = vec4(0.0, 0.0, 0.0, 1.0);
+    open_light = vec4(0.0, 0.0, 0.0, 1.0);
+    all_light = vec4(0.0);
     if (!receiverHere(receiver)) return;
 
     mat3 worldFrame = mat3(world_from_view) * receiver.frame;
-    vec3 light = vec3(0.0);
-    float open = 0.0;
+    vec4 open = vec4(0.0), all = vec4(0.0);
     for (int i = 0; i < directions; ++i) {
-        float openness = isWayBlocked(receiver, i) ? 0.0 : 1.0;
-        light += openness * texture(prefiltered_environment, octahedralUv(worldFrame * kernel[i].xyz)).rgb;
-        open += openness;
+        vec4 light = vec4(texture(prefiltered_environment, octahedralUv(worldFrame * kernel[i].xyz)).rgb, 1.0);
+        open += isWayBlocked(receiver, i) ? vec4(0.0) : light;
+        all += light;
     }
-    irradiance = min(vec4(PI * light, open) / float(directions), 65504.0);  // the target's largest number
+    open_light = min(open / float(directions), LARGEST);
+    all_light = min(all / float(directions), LARGEST);
 }

@@ -60,20 +60,23 @@ Thickness = Annotated[
     ),
 ]
 
-# of methods that bounce light from what blocks: glsl/lib/senders.glsl
+# of methods that bounce light from occluders: glsl/lib/senders.glsl
 Bleeding = Annotated[
-    float, Field(ge=0, le=16, description="Strength of the bounce: scales the area of a sender, π radius² / N.")
+    float, Field(ge=0, le=16, description="Strength of the bounce: a factor of the indirect light; 1 is physical.")
 ]
 DistanceClamp = Annotated[
     Annotated[float, Field(gt=0)] | Literal["auto"],
     Field(
-        description="Least distance of a sender; auto is the radius of its patch, radius / √N.",
+        description="Least distance of a patch; auto is the radius of its disc, radius / √N.",
         json_schema_extra={"unit": "scene units"},
     ),
 ]
 Senders = Annotated[
     Literal["patches", "rays"],
-    Field(description="What an occluder sends: a patch of area A_s at its distance, or its share of directions."),
+    Field(
+        description="Share of an occluder in the light: that of its direction (`rays`), or the form factor of a patch "
+        "of area π radius² / N, as printed, which is more than the light that there is (`patches`)."
+    ),
 ]
 
 AUTO_RADIUS_SHARES = (0.02, 0.1)  # of the scene's radius: over a few pixels, and not across the room

@@ -16,6 +16,7 @@ from .readable import Readable
 
 OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
 BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
+SENDERS = {**BOUNCE, "sender_offset": "RGBA16F"}
 
 
 def _coefficients(frame: Readable, raw: str) -> np.ndarray:
@@ -23,9 +24,19 @@ def _coefficients(frame: Readable, raw: str) -> np.ndarray:
     occlusion = np.concatenate([frame[f"occlusion{i}{raw}"] for i in range(4)], axis=-1)
     normal = frame.world_normal(f"occlusion0{raw}")
     to_world = rotation(frame.camera.view_from_world[:3, :3].T).astype(np.float32)
-    transfer = clamped_cosine(normal).astype(np.float32) - occlusion @ to_world.T
-    open = np.clip(transfer[..., :1] * (2 / np.sqrt(np.pi)) * frame.info["parameters"]["directions"], 0, 1)
-    return np.where(normal.any(axis=-1, keepdims=True), transfer * open, 0).astype(np.float32)
+    transfer = _within_bounds(clamped_cosine(normal).astype(np.float32) - occlusion @ to_world.T)
+    return np.where(normal.any(axis=-1, keepdims=True), transfer, np.float32(0))
+
+
+def _within_bounds(transfer: np.ndarray) -> np.ndarray:
+    """(..., 16): every band at most as long as in a function that is nowhere negative, √(2l + 1) times band 0."""
+    whole = np.maximum(transfer[..., :1], 0)
+    bands = [whole]
+    for band in range(1, 4):
+        part = transfer[..., band**2 : (band + 1) ** 2]
+        length = np.maximum(np.linalg.norm(part, axis=-1, keepdims=True), np.float32(1e-10))
+        bands.append(part * np.minimum(whole * np.float32(np.sqrt(2 * band + 1)) / length, 1))
+    return np.concatenate(bands, axis=-1)
 
 
 def _column(i: int) -> Callable[[Readable, str], np.ndarray]:
@@ -41,8 +52,8 @@ def _visibility(frame: Readable, raw: str) -> np.ndarray:
 class S3HO(Marched):
     """Visibility times cosine in spherical harmonics (`sh0` to `sh3`); light comes afterwards, by a dot product.
 
-    The estimate knows no light: `Lab.relight` moves lights, turns the environment, and computes nothing else anew. With
-    `indirect`, what blocks reflects the light that will come, as nine coefficients a colour (`bounce0` to `bounce6`).
+    The estimate does not depend on the light: after lights or environment changed, `Lab.relight` computes the lighting
+    only. With `indirect`, occluders reflect the light, as nine coefficients a colour (`bounce0` to `bounce6`).
     """
 
     name = "s3ho"
@@ -61,34 +72,43 @@ class S3HO(Marched):
             for name in OCCLUSION
         ),
         *(Buffer(name, 4, "RGBA16F", "", 0, "numbers", "Coefficients of the bounce, packed.") for name in BOUNCE),
+        Buffer("sender_offset", 4, "RGBA16F", "radii", 0, "numbers", "Sums of the senders' offsets and weights."),
     )
 
+    estimator: Literal["blocked", "plain"] = parameter(
+        "blocked", "The clamped cosine less the blocked directions, or the `plain` sum over open ones."
+    )
     strength: float = parameter(
-        0.0, "λ: what blocks at distance d lets 1 - 1/(1 + λ d) through; 0 blocks wholly, as rays do.", ge=0, le=100,
+        0.0, "λ: an occluder at distance d lets 1 - 1/(1 + λ d) through; 0 blocks wholly, as for rays.", ge=0, le=100,
         unit="1 / radii",
     )  # fmt: skip
     lights: Literal["lobes", "sharp"] = parameter(
-        "lobes", "Lights as windowed lobes that occlusion shades, past their shadow maps; or past these alone, sharp."
+        "lobes", "Lights after their shadow maps: as windowed lobes, which occlusion shades, or as they are (`sharp`)."
     )
     light_window: float = parameter(
-        4.0, "Hann window of a light's lobe: its width; the smaller, the broader the lobe.", gt=1, le=64, unit="bands"
+        4.0,
+        "Width of the Hann window of a light's lobe; a smaller one makes a broader lobe.",
+        gt=1,
+        le=64,
+        unit="bands",
     )
-    indirect: bool = parameter(False, "One bounce from the occluders on the screen, in coefficients too (S3HOGI).")
+    indirect: bool = parameter(False, "One bounce from the occluders on the screen, as coefficients (S3HOGI).")
     bleeding: Bleeding = 1.0
     distance_clamp: DistanceClamp = "auto"
-    senders: Senders = "patches"
+    senders: Senders = "rays"
 
     def estimate(self) -> Estimate:
         passes, outputs = self.passes(), dict(OCCLUSION)
         if self.indirect:
-            patches = {"patches": self.senders == "patches"}
-            # light that is not known yet: its sender is told by its albedo, as hidden ones are from the beginning
-            passes.append(Pass("s3ho senders", "s3ho.senders.frag", BOUNCE, patches, {"sender": "albedo"}))
-            outputs |= BOUNCE
+            constants = {"patches": self.senders == "patches", "fading": self.strength > 0}
+            # no light is known yet: a sender is given by its albedo, as hidden ones are from the beginning
+            passes.append(Pass("s3ho senders", "s3ho.senders.frag", SENDERS, constants, {"sender": "albedo"}))
+            outputs |= SENDERS
         return Estimate(passes, outputs)
 
     def passes(self) -> list[Pass]:
-        return [Pass("s3ho", self.shader, OCCLUSION, {"fading": self.strength > 0})]
+        constants = {"fading": self.strength > 0, "plain": self.estimator == "plain"}
+        return [Pass("s3ho", self.shader, OCCLUSION, constants)]
 
     def sends(self) -> bool:
         return self.indirect

@@ -15,3 +15,9 @@ vec2 environmentUv(vec3 worldDir) {
     float polar = atan(across, worldDir.y); // = acos(d.y) for a unit vector, but precise near the poles
     return vec2(0.5 + azimuth / (2.0 * PI), polar / PI);
 }
+
+// Where a table of aolab/scene/irradiance.py, `size` texels, holds the normal `worldDir`: the poles are at the centres of
+// the first and last row, and one column more on each side continues the circle.
+vec2 irradianceUv(vec3 worldDir, ivec2 size) {
+    return (environmentUv(worldDir) * vec2(size.x - 2, size.y - 1) + vec2(1.0, 0.5)) / vec2(size);
+}

@@ -49,26 +49,22 @@ bool isWayBlocked(Receiver receiver, int i) {
     return blocked;
 }
 
-// Is direction `i` blocked? `first` is the nearest occluder on it: it hides the others.
-bool isWayBlocked(Receiver receiver, int i, out Occluder first) {
-    bool blocked = false;
+// The distance of the first blocked point on direction `i`, as a share of its reach; OPEN if there is none. `first` is the
+// occluder there, which hides the others.
+float firstBlocked(Receiver receiver, int i, out Occluder first) {
+    float nearest = OPEN;
     for (int j = 0; j < steps; ++j) {
         float along;
         Occluder occluder;
-        bool hit = isPointBlocked(receiver, i, j, along, occluder);
-        if (hit && !blocked) first = occluder;
-        blocked = blocked || hit;
+        bool hit = isPointBlocked(receiver, i, j, along, occluder) && along < nearest;
+        if (hit) first = occluder;
+        nearest = hit ? along : nearest;
     }
-    return blocked;
+    return nearest;
 }
 
-// The distance of the first blocked point on direction `i`, as a share of its reach; OPEN if there is none.
+// The same without the occluder.
 float firstBlocked(Receiver receiver, int i) {
-    float first = OPEN;
-    for (int j = 0; j < steps; ++j) {
-        float along;
-        Occluder occluder;
-        first = min(first, isPointBlocked(receiver, i, j, along, occluder) ? along : OPEN);
-    }
-    return first;
+    Occluder first;
+    return firstBlocked(receiver, i, first);
 }

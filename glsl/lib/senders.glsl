@@ -1,24 +1,27 @@
-// How much of the light that leaves an occluder arrives: SSDO's senders (Ritschel, Grosch and Seidel 2009, section 3),
-// for all methods that bounce light from what blocks.
-//   f_i = A_s cosθ_s cosθ_r / d_i²,  A_s = bleeding π r_max² / N
-// d is clamped from below; the paper clamps to 1, we to `distance_clamp` in scene units. With `patches` off, a sender fills
-// its direction's share of the hemisphere instead, π/N over the density cosθ/π: what a ray tracer would do, and without a
-// singularity. Back-facing senders, and those below the receiver's horizon, give nothing.
+// How much of the light that leaves an occluder arrives at the receiver, for every method that bounces light from
+// occluders. The irradiance that occluder i causes is its radiance times
+//   rays:     π/N, the share of direction i of N under the density cosθ/π: Monte Carlo integration, as a ray tracer has it;
+//   patches:  A_s cosθ_s cosθ_r / d_i² × 1/(2 cosθ_i),  A_s = π r_max²/N  (Ritschel, Grosch and Seidel 2009, section 3).
+// The paper's sum of patches is over uniform directions; 1/(2 cosθ_i) is the ratio of the two densities, uniform to cosine.
+// The paper clamps d to at least 1; here the clamp is `distance_clamp`, in scene units. A sender that faces away from the
+// receiver, or lies below its horizon, contributes 0. `bleeding` scales both.
 
 const bool patches;
 
-uniform float bleeding;        // scales A_s
+uniform float bleeding;
 uniform float distance_clamp;  // scene units
 
-float formFactor(Receiver receiver, Occluder occluder, vec3 occluderNormal) {
+// `occluder` is the first one on direction `i`, and `occluderNormal` its unit normal in view space.
+float formFactor(Receiver receiver, int i, Occluder occluder, vec3 occluderNormal) {
     vec3 toSender = occluder.viewPos - receiver.viewPos;
-    float squaredDistance = max(dot(toSender, toSender), 1e-20);
     float facing = dot(occluderNormal, -toSender);   // d cosθ_s
     float rising = dot(receiver.normal, toSender);   // d cosθ_r
     float share = facing > 0.0 && rising > 0.0 ? 1.0 : 0.0;
     if (patches) {
+        float squaredDistance = max(dot(toSender, toSender), 1e-20);
         float clamped = max(squaredDistance, distance_clamp * distance_clamp);
-        share *= radius * radius * rising * facing / (squaredDistance * clamped);
+        float cosine = normalize(kernel[i].xyz).z;   // a kernel's vector is as long as it reaches
+        share *= radius * radius * rising * facing / (squaredDistance * clamped) / (2.0 * cosine);
     }
     return bleeding * PI / float(directions) * share;
 }

@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 import small_scenes
+from module_settings import alternatives, contexts, kinds
 
 from aolab import DirectionalLight, Environment, Frame, Module, ParameterError, Pass, PointLight, Scene, paths
 from aolab.gl.texture import FORMATS
 from aolab.modules import MODULES, known_buffers
 from aolab.modules.filters import FILTERS
 from aolab.modules.occluders import OCCLUDERS
-from aolab.modules.parameters import Parameters, describe
+from aolab.modules.parameters import describe
 
 CHECKOUT = Path(__file__).parents[2]
 pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
@@ -22,41 +23,6 @@ CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: it asks for no occluders, and there is nothing to filter
 WITHOUT_EFFECT = {("none", field) for field in MODULES["none"].model_fields if field != "scale"}
-
-
-def alternatives(module: type[Parameters], field: str) -> list[Any]:
-    """Other values that the parameter may take: every other choice; for numbers, its bounds and multiples."""
-    info = module.model_fields[field]
-    choices = [value for kind in kinds(info.annotation) for value in typing.get_args(kind)]
-    if set(kinds(info.annotation)) == {bool}:
-        choices = [True, False]
-    bounds = [
-        bound for name in ("ge", "le") for one in info.metadata if (bound := getattr(one, name, None)) is not None
-    ]
-    numbers: list[Any] = [0.3, 1.7]
-    if isinstance(info.default, int | float):
-        numbers = [*bounds, info.default * 2, info.default // 2 if isinstance(info.default, int) else info.default / 2]
-    numeric = {int, float} & set(kinds(info.annotation))
-    allowed = []
-    for value in [*choices, *(numbers if numeric else [])]:
-        try:
-            if getattr(module(**{field: value}), field) != info.default:
-                allowed.append(value)
-        except ParameterError:
-            continue
-    return allowed
-
-
-def kinds(annotation: Any) -> list[Any]:
-    """The plain types and Literals in an annotation."""
-    if typing.get_origin(annotation) in (None, typing.Literal):
-        return [annotation]
-    return [
-        kind
-        for part in typing.get_args(annotation)
-        if isinstance(part, type) or typing.get_args(part)
-        for kind in kinds(part)
-    ]
 
 
 def differ(one: Frame, other: Frame) -> bool:
@@ -116,18 +82,6 @@ def probe(wall) -> Scene:
         lights=(DirectionalLight((-1.0, -2.0, 0.5)), PointLight((2.0, 2.0, 1.0))),
         sky=Environment.sky(sun_direction=(1.0, 1.0, 0.0)),
     )
-
-
-def contexts(module: type[Module], field: str) -> list[dict[str, Any]]:
-    """Settings under which a parameter may matter: the defaults, and every other choice of each other parameter."""
-    choices = [
-        {other: value}
-        for other, info in module.model_fields.items()
-        if other != field and (info.annotation is bool or typing.get_origin(info.annotation) is typing.Literal)
-        for value in ((False, True) if info.annotation is bool else typing.get_args(info.annotation))
-        if value != info.default
-    ]
-    return [{}, *choices]
 
 
 @pytest.mark.parametrize(("name", "field"), PARAMETERS)

@@ -221,7 +221,7 @@ void main() {{
     Occluder first;
     visibility = 1.0;
     if (!receiverHere(receiver)) return;
-    if (isWayBlocked(receiver, 0, first)) visibility = occluderNormal(first).x + occluderRadiance(first).x;
+    if (firstBlocked(receiver, 0, first) < OPEN) visibility = occluderNormal(first).x + occluderRadiance(first).x;
     visibility += {" + ".join(f"texelFetch({name}, ivec2(0), 0).r" for name in more)};
 }}
 """

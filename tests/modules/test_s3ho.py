@@ -73,7 +73,9 @@ def test_visibility_is_that_of_ssao_with_the_same_samples(lab, boxes):
         assert np.nanmin(ours["visibility"]) < 0.6
 
 
-@pytest.mark.parametrize("settings", [{}, {"strength": 3.0}, {"directions": 5, "steps": 1, "falloff": 0.0}])
+@pytest.mark.parametrize(
+    "settings", [{}, {"strength": 3.0}, {"directions": 5, "steps": 1, "falloff": 0.0}, {"estimator": "plain"}]
+)
 def test_moments_give_what_the_plain_form_gives(lab, boxes, settings):
     fast, plain = (lab.render(boxes, kind(radius=1.0, filter="none", **settings)) for kind in (S3HO, Plain))
     for i in range(4):
@@ -107,12 +109,56 @@ def test_coefficients_turn_with_the_camera(lab, wall):
     assert np.linalg.norm(found[0] - clamped_cosine(np.array([0.0, 1.0, 0.0]))) > 0.2
 
 
+def test_the_plain_sum_has_the_same_mean_and_more_noise(lab, boxes):
+    sets = {kind: [] for kind in ("blocked", "plain")}
+    for seed in range(8):
+        for kind, found in sets.items():
+            frame = lab.render(boxes, "s3ho", radius=0.7, estimator=kind, seed=seed, filter="none")
+            found.append(coefficients(frame)[frame.mask])
+    blocked, plain = (np.stack(found) for found in sets.values())
+    assert np.abs(blocked.mean(axis=(0, 1)) - plain.mean(axis=(0, 1))).max() < 0.02
+    assert blocked.std(axis=0).mean() < 0.5 * plain.std(axis=0).mean()
+
+
+def test_bands_are_no_longer_than_those_of_a_function_that_is_nowhere_negative(lab, wall):
+    """|c_l| ≤ √(2l + 1) |c_0|, and shader and Python agree on it: before a wall, three directions exceed it."""
+    frame = lab.render(under(wall, SUN), "s3ho", radius=2.0, directions=3, filter="none", size=SHARP)
+    found = coefficients(frame)[frame.mask]
+    assert found[:, 0].min() >= 0
+    atop = 0.0
+    for band in range(1, 4):
+        lengths = np.linalg.norm(found[:, band**2 : (band + 1) ** 2], axis=1)
+        bound = np.sqrt(2 * band + 1) * found[:, 0]
+        assert (lengths <= bound + 1e-5).all()
+        atop = max(atop, (lengths > bound - 1e-5).mean())
+    assert atop > 0.02
+    arriving = np.maximum(found @ SUN.radiance_sh, 0)
+    np.testing.assert_allclose(frame["ambient"][frame.mask], arriving / np.pi, rtol=0.01, atol=0.02)
+
+
+def test_deep_trenches_converge_with_sets_of_few_directions(lab):
+    """At a visibility of 0.1, 64 sets of four directions give what four sets of 64 give."""
+    sides = [small_scenes.box((low, 0, -5), (low + 4.9, 1, 5)) for low in (-5, 0.1)]
+    trench = small_scenes.of(small_scenes.floor(9), *sides, camera=aolab.Camera((0, 2.5, 2.5), (0, 0, 0), fov=15))
+    few, many = (
+        lab.render(
+            trench, "s3ho", radius=2.0, thickness=10.0, directions=n, steps=8, accumulate=256 // n, filter="none"
+        )
+        for n in (4, 64)
+    )
+    deep = many["visibility"] < 0.15
+    assert deep.sum() > 20
+    assert few["ambient"][deep].mean() == pytest.approx(many["ambient"][deep].mean(), rel=0.1)
+
+
 @pytest.mark.slow
 def test_strength_lets_light_through_what_blocks(lab, wall):
     """Before a wall, the formula over all directions: one with d_x < 0 is blocked at x / -d_x."""
     radius, strength = 2.0, 3.0
     module = S3HO(radius=radius, directions=32, steps=32, falloff=0.5, filter="none", thickness=10.0)
-    hard, soft = (lab.render(wall, module, size=SHARP, strength=value)["visibility"] for value in (0.0, strength))
+    hard, soft = (
+        lab.render(wall, module, size=SHARP, accumulate=2, strength=value)["visibility"] for value in (0.0, strength)
+    )
     seen = lab.render(wall, "none", size=SHARP)
     across = small_scenes.world_positions(seen, wall.camera)[..., 0]
     u, v = np.meshgrid((np.arange(400) + 0.5) / 400, (np.arange(400) + 0.5) / 400)
@@ -320,6 +366,26 @@ def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
     assert frame["indirect"].max() < 1e-3
     open = lab.render(under(wall, Environment.constant(0), sun), "s3ho", indirect=True, radius=1.0)
     assert open["indirect"].max() > 0.05
+
+
+@pytest.mark.parametrize("direction", [(1.0, -1.0, 0.0), (0.0, -1.0, 0.0)], ids=["slanting", "from above"])
+def test_light_comes_back_to_what_faces_away_from_the_lamp(lab, direction):
+    """The underside of a shelf over a sunlit floor, on which the shelf's shadow lies: as SSDO and rays have it."""
+    sun = DirectionalLight(direction, (np.pi, np.pi, np.pi))
+    grey = aolab.Material((0.8, 0.8, 0.8))
+    board = small_scenes.box((-0.6, 0.5, -1.5), (0.6, 0.6, 1.5), grey)
+    camera = aolab.Camera((-3.2, 0.25, 2.2), (0, 0.3, 0), fov=36)
+    scene = under(small_scenes.of(small_scenes.floor(8, grey), board, camera=camera), Environment.constant(0), sun)
+    size = (96, 72)
+    like = S3HO(radius=1.5, indirect=True)
+    truth = aolab.reference(scene, size=size, like=like, rays=64, buffers="indirect", cache=False)["indirect"]
+    ours = lab.render(scene, like, size=size)
+    theirs = lab.render(scene, "ssdo", radius=1.5, bounces=1, size=size)["indirect"]
+    below = ours.mask & (ours.world_normal()[..., 1] < -0.9)
+    assert below.sum() > 100
+    assert truth[below].mean() > 0.05
+    assert ours["indirect"][below].mean() == pytest.approx(truth[below].mean(), rel=0.35)
+    assert ours["indirect"][below].mean() == pytest.approx(theirs[below].mean(), rel=0.25)
 
 
 def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
