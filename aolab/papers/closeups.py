@@ -35,7 +35,7 @@ def closeup(picture: np.ndarray, middle: tuple[float, float]) -> np.ndarray:
 
 
 def over_background(radiance: np.ndarray, truth: Frame) -> np.ndarray:
-    """`radiance` (H, W, 3) of the truth's surfaces over its environment, as (H, W, 3) uint8: an image like a frame's."""
+    """`radiance` (H, W, 3) of the truth's surfaces, over its environment, as an image (H, W, 3) uint8."""
     assert truth.scene is not None  # the reference has one
     assert truth.scene.environment is not None  # Scene fills it in
     return shown(over_environment(radiance, truth.mask, truth.scene.environment, view_of(truth)))

@@ -46,12 +46,16 @@ def verdict(needs: Sequence[Need]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """`claim` is the paper's, in a sentence; it holds if all `needs` are met. `numbers` are plain values for JSON."""
+    """`claim` is the paper's, in a sentence; it holds if all `needs` are met. `numbers` are plain values for JSON.
+
+    `finding` is a sentence that the numbers add to the claim, or nothing.
+    """
 
     picture: Image.Image
     numbers: dict[str, Any]
     claim: str
     needs: tuple[Need, ...]
+    finding: str = ""
 
     @property
     def holds(self) -> bool:
@@ -74,7 +78,13 @@ def figure(
     numbers: dict[str, Any],
     pictures: Sequence[tuple[str, np.ndarray]],
     columns: int,
+    finding: str = "",
 ) -> Figure:
-    """The figure whose picture shows captioned `pictures` in rows of `columns`, under heading, claim and verdict."""
-    picture = contact_sheet(pictures, columns, title=f"{heading}. Claim: {claim}. Verdict: {verdict(needs)}.")
-    return Figure(picture, numbers, claim, tuple(needs))
+    """The figure whose picture shows captioned `pictures` in rows of `columns`, under `title`."""
+    picture = contact_sheet(pictures, columns, title=title(heading, claim, needs, finding))
+    return Figure(picture, numbers, claim, tuple(needs), finding)
+
+
+def title(heading: str, claim: str, needs: Sequence[Need], finding: str = "") -> str:
+    """The text above a figure's picture: it gives the verdict, as the numbers do."""
+    return f"{heading}. Claim: {claim}. Verdict: {verdict(needs)}." + (f" Finding: {finding}." if finding else "")

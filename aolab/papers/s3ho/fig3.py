@@ -18,8 +18,8 @@ POINTS = {"p1": ("occluded from the right", 1), "p2": ("occluded from the left",
 def fig3(size: Size = (400, 225), rays: int = 4096) -> Figure:
     """One point on the floor under one light, with a wall to its right (p1), and with one to its left (p2).
 
-    Numbers: red over blue of the irradiance at the point, from S3HO's coefficients and from those that rays find; and of
-    the open point, whose colour SSAO, a factor, would leave as it is.
+    Numbers: red over blue of the light that the point reflects, with S3HO, with the coefficients that rays find, and
+    with all open, which is the colour that SSAO, a factor, leaves unchanged; and the visibility.
     """
     numbers, pictures, needs = {}, [], []
     for name, (where, side) in POINTS.items():

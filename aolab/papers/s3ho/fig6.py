@@ -33,7 +33,9 @@ def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
     in that of SSAO, and blue over red.
     """
     scene, large = without_shadow_maps(load("skyscrapers")).replace(camera=CITY), zoomed(size)
-    frame, open_ = (drawn(scene, TOWERS.replace(radius=radius), large, accumulate=4) for radius in (TOWERS.radius, OPEN))
+    frame, open_ = (
+        drawn(scene, TOWERS.replace(radius=radius), large, accumulate=4) for radius in (TOWERS.radius, OPEN)
+    )
     truth = reference(scene, size=large, like=TOWERS, rays=rays, buffers=("visibility", *HARMONICS))
     factor = open_["radiance"] * np.where(frame.mask, frame["visibility"], 1)[..., None]
     radiance = {"S3HO": frame["radiance"], "SSAO": factor, "rays": _lit(truth)}
@@ -55,7 +57,9 @@ def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
         "SSAO": shown(factor),
         "S3HO with coefficients by rays": over_background(radiance["rays"], truth),
     }
-    claim = "Local shadows that are open away from the sun are darker and bluer than SSAO's, those towards it are lighter"
+    claim = (
+        "Local shadows that are open away from the sun are darker and bluer than SSAO's, those towards it are lighter"
+    )
     pictures = [(name, overview(image)) for name, image in images.items()]
     for side, middle in CLOSEUPS.items():
         pictures += [(f"{name}, {side}", closeup(image, middle)) for name, image in images.items()]

@@ -17,7 +17,7 @@ from ...truth import reference
 from ..pixels import world_positions
 
 HARMONICS = ("sh0", "sh1", "sh2", "sh3")
-# The radius is the height of walls and boxes. What is accumulated needs no filter, whose even width has no middle pixel.
+# The radius is the height of walls and boxes. A mean of frames needs no filter, whose even width has no middle pixel.
 LAMPS = S3HO(radius=1.0, directions=32, steps=16, filter="none")
 
 

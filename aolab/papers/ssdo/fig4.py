@@ -30,16 +30,16 @@ def fig4(size: Size = (400, 225), frames: int = FRAMES, rays: int = 128) -> Figu
     that of rays. The path is taken in two step sizes: a jump would stay as large when the steps are halved, whereas a
     continuous change halves with them.
     """
-    degrees = np.linspace(0, TOTAL, 2 * frames - 1)
+    degrees = np.linspace(0, TOTAL, 2 * frames - 1).tolist()
     paths = {
         name: np.array([_bounce(_drawn(size, angle, module)) for angle in degrees]) for name, module in MODULES.items()
     }
-    chosen = np.linspace(0, 2 * frames - 2, 4).round().astype(int)
+    chosen = np.linspace(0, 2 * frames - 2, 4).round().astype(int).tolist()
     truths = [
         reference(_scene(degrees[i]), size=size, like=MODULES["SSDO"], rays=rays, buffers=("indirect",)) for i in chosen
     ]
     right = _bounce(truths[0])
-    needs, numbers = [], {"degrees": degrees.tolist(), "bounce": {}, "first_over_rays": {}, "largest_change": {}}
+    needs, numbers = [], {"degrees": degrees, "bounce": {}, "first_over_rays": {}, "largest_change": {}}
     for name, path in paths.items():
         values = path / path[0]
         coarse, fine = (float(np.abs(np.diff(v)).max()) for v in (values[::2], values))

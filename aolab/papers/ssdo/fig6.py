@@ -24,7 +24,7 @@ KINDS = {"one layer": "depth", "peeled layers": "layers"}
 
 
 def fig6(size: Size = (480, 270)) -> Figure:
-    """The shadow of a post, on the screen alone: with one depth layer and with peeled ones, beside rays and a shadow map.
+    """The shadow of a post on the screen alone, by one depth layer and by peeled ones; beside rays and a shadow map.
 
     Numbers: the length of the shadow, in that of the shadow of a segment as long as the radius; the share of the true
     shadow that is found; the area of false shadow, in areas of the true one.
