@@ -73,10 +73,10 @@ def _modules(directions: int) -> dict[str, Module]:
     common = {"radius": RADIUS, "directions": directions, "steps": 2}
     return {
         "SSAO": SSAO(**common),
-        "S3HO": S3HO(**common, estimator="plain"),
-        "SSDO": SSDO(**common, estimator="plain"),
-        "SSBN": SSBN(**common, weighting="uniform"),
-        BOUNCE: S3HO(**common, estimator="plain", senders="patches", indirect=True),
+        "S3HO": S3HO(**common).replace(estimator="plain"),
+        "SSDO": SSDO(**common).replace(estimator="plain"),
+        "SSBN": SSBN(**common).replace(weighting="uniform"),
+        BOUNCE: S3HO(**common, indirect=True).replace(estimator="plain", senders="patches"),
     }
 
 

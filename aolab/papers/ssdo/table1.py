@@ -26,7 +26,7 @@ PAPER = {
     ((1600, 1200), 8): (24.8, 24.2, 15.9, 2.4, 35.9),
     ((1600, 1200), 16): (16.8, 15.3, 9.0, 8.9, 46.4),
 }
-PRINTED = {"estimator": "plain", "senders": "patches"}  # the paper's sums
+PRINTED = SSDO(radius=RADIUS, steps=1, estimator="plain", senders="patches")
 # the largest of the shares that are lost, in percent, and half of the last printed digit
 CLAIMED = {"directional_occlusion": 8.9 + 0.05, "one_bounce": 46.4 + 0.05}
 
@@ -82,8 +82,8 @@ def _row(scene: Scene, size: Size, paper_size: Size, directions: int, repeats: i
     )
     modules: dict[str, Module] = {
         "ssao": SSAO(radius=RADIUS, directions=directions, steps=1),
-        "directional_occlusion": SSDO(radius=RADIUS, directions=directions, steps=1, **PRINTED),
-        "one_bounce": SSDO(radius=RADIUS, directions=directions, steps=1, bounces=1, **PRINTED),
+        "directional_occlusion": PRINTED.replace(directions=directions),
+        "one_bounce": PRINTED.replace(directions=directions, bounces=1),
     }
     draw = partial(shared_lab().render, scene, size=(width, height))
     costs = in_turns({name: partial(draw, module) for name, module in modules.items()}, repeats)
