@@ -31,8 +31,8 @@ FOUNTAIN = (0.52, 0.62)  # x, y in the picture
 def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
     """The atrium with one bounce, and its diffuse light without textures and before the filter.
 
-    Numbers: the means of the light and of its bounce, in those of rays; the noise, relative, of the light with the bounce
-    and of the bounce alone, with the sun and under the sky alone. Rays meet the small sun too seldom for a picture.
+    Numbers: the means of the light and of its bounce, in those of rays; the relative noise of both together, and of
+    the bounce alone, with the sun and under the sky alone. Rays meet the small sun too seldom for a picture.
     """
     large, scene = zoomed(size), atrium()
     truth = reference(scene, size=large, like=BOUNCE, rays=rays, buffers=("ambient", "indirect"))

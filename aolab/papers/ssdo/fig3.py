@@ -28,8 +28,8 @@ BOXES = {"at the pale box": -1, "at the yellow box": 1}
 def fig3(size: Size = (320, 180), rays: int = 64) -> Figure:
     """None, SSAO, SSDO, SSDO with one bounce, the same as printed, and rays of the same radius, with close-ups.
 
-    Numbers: the turn of a shadow's colour, from 0, the colour of the open floor, to 1, that of the open side's light; of
-    the light that the boxes bounce onto the floor, the amount in that of rays, and blue over red.
+    Numbers: the turn of a shadow's colour, from 0, the colour of the open floor, to 1, that of the open side's light;
+    of the light that the boxes bounce onto the floor, the amount in that of rays, and blue over red.
     """
     scene, large = stage(), zoomed(size)
     frames = {name: drawn(scene, module, large) for name, module in MODULES.items()}
