@@ -39,11 +39,11 @@ def fig3(size: Size = (320, 180), rays: int = 64) -> Figure:
     needs = [Need("SSAO's largest turn", float(np.abs([*turns["SSAO"].values()]).max()), below=0.02)]
     for side, right in turns["rays"].items():
         needs.append(Need(f"SSDO's turn over rays', {side}", turns["SSDO"][side] / right, 0.85, 1.15))
-        needs.append(Need(f"the turn as printed over rays', {side}", turns["as printed"][side] / right, 0.5, 1.5))
+        needs.append(Need(f"the turn as printed over rays', {side}", turns["as printed"][side] / right, 0.35, 1.15))
     for box in BOXES:
         ours, printed = bounces["SSDO + 1 bounce"][box], bounces["as printed"][box]
         needs.append(Need(f"the bounce over rays', {box}", ours["over_rays"], 0.8, 1.2))
-        needs.append(Need(f"the bounce as printed over rays', {box}", printed["over_rays"], 0.5, 2))
+        needs.append(Need(f"the bounce as printed over rays', {box}", printed["over_rays"], 0.35, 1.5))
     for name in ("SSDO + 1 bounce", "as printed"):
         yellow, pale = (bounces[name][box]["blue_over_red"] for box in ("at the yellow box", "at the pale box"))
         needs.append(Need(f"blue over red of the bounce, yellow box over pale, {name}", yellow / pale, below=0.3))
