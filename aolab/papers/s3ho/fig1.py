@@ -16,8 +16,8 @@ def fig1(size: Size = (480, 270), rays: int = 256) -> Figure:
     """Diffuse lighting alone, SSAO's occlusion factor, and both; and the factor by rays.
 
     Numbers: the mean occlusion in that of rays, and the correlation of the two; among the pixels with nothing near, the
-    share that occlusion darkens; the largest factor; the largest difference of the three colours' factors; and the
-    largest change of the factor when the sky is turned by half.
+    share that occlusion darkens; the largest factor; and the largest differences: of the three colours' factors, of the
+    factor from the visibility, and of the factor when the sky is turned by half.
     """
     scene = atrium()
     assert scene.environment is not None  # Scene fills it in
@@ -35,6 +35,7 @@ def fig1(size: Size = (480, 270), rays: int = 256) -> Figure:
         "darkened_with_nothing_near": float((factor.mean(axis=-1) < 0.995)[visibility > 0.999].mean()),
         "largest_factor": float(factor.max()),
         "difference_between_colours": float(np.ptp(factor, axis=-1).max()),
+        "difference_from_the_visibility": float(np.abs(factor - visibility[:, None]).max()),
         "change_under_a_turned_sky": float(np.abs(other - factor).max()),
         "rays": rays,
     }
@@ -44,6 +45,7 @@ def fig1(size: Size = (480, 270), rays: int = 256) -> Figure:
         Need("the share darkened with nothing near", numbers["darkened_with_nothing_near"], below=0.001),
         Need("the largest factor", numbers["largest_factor"], below=1.001),
         Need("the largest difference between colours", numbers["difference_between_colours"], below=0.01),
+        Need("the largest difference from the visibility", numbers["difference_from_the_visibility"], below=0.01),
         Need("the largest change under a turned sky", numbers["change_under_a_turned_sky"], below=0.01),
     ]
     claim = "Occlusion as a factor only darkens, all colours alike, whatever the light: its shadows are grey and static"
