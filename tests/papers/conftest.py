@@ -96,7 +96,7 @@ def draw(gl: object, references: Path) -> Callable[[str, str], Figure]:
 def broken(
     shaders: Path, references: Path, monkeypatch: pytest.MonkeyPatch
 ) -> Iterator[Callable[[str, str, str], Figure]]:
-    """`broken("ssdo", "fig3", "no cosines")`: the figure with edited shaders. An edit that finds no text is an error."""
+    """`broken("ssdo", "fig3", "no cosines")`: the figure with edited shaders. Each edit has to find its text."""
     monkeypatch.setenv("AOLAB_CACHE", str(references))
 
     def draw_with(paper: str, name: str, edit: str) -> Figure:

@@ -8,7 +8,7 @@ from aolab.papers.ssdo.table1 import PAPER
 
 pytestmark = pytest.mark.figures
 
-# marched directions find a sender until it is thinner than a pixel: the bounce stays right, and drops in the last degrees
+# marched directions find a sender until it is thinner than a pixel: the bounce stays right, and then drops
 UNMET = {
     "fig4": {
         "the largest change from frame to frame, SSDO",
