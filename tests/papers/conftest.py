@@ -1,6 +1,6 @@
 """Figures at low resolution, with the shaders as they are and with a shader that was broken on purpose."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -93,19 +93,22 @@ def draw(gl: object, references: Path) -> Callable[[str, str], Figure]:
 
 
 @pytest.fixture
-def broken(
-    shaders: Path, references: Path, monkeypatch: pytest.MonkeyPatch
-) -> Iterator[Callable[[str, str, str], Figure]]:
+def broken(shaders: Path, references: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Figure]:
     """`broken("ssdo", "fig3", "no cosines")`: the figure with edited shaders. Each edit has to find its text."""
     monkeypatch.setenv("AOLAB_CACHE", str(references))
 
     def draw_with(paper: str, name: str, edit: str) -> Figure:
+        whole = {file: (shaders / file).read_text() for file, _, _ in EDITS[edit]}
         for file, old, new in EDITS[edit]:
             text = (shaders / file).read_text()
             assert old in text, f"{file} does not contain {old!r} any more"
             (shaders / file).write_text(text.replace(old, new))
-        return drawn(paper, name)
+        shared_lab.cache_clear()  # the next one compiles the edited shaders
+        try:
+            return drawn(paper, name)
+        finally:
+            shared_lab.cache_clear()
+            for file, text in whole.items():
+                (shaders / file).write_text(text)
 
-    shared_lab.cache_clear()  # the next one compiles the edited shaders
-    yield draw_with
-    shared_lab.cache_clear()
+    return draw_with
