@@ -56,9 +56,9 @@ EDITS = {
 SMALL = {
     ("ssdo", "fig1"): {"repeats": 1},
     ("ssdo", "fig3"): {"size": (96, 54)},
-    ("ssdo", "fig4"): {"frames": 12, "rays": 64},
+    ("ssdo", "fig4"): {"frames": 22, "rays": 64},
     ("ssdo", "fig6"): {"size": (240, 135)},
-    ("ssdo", "fig7"): {"rays": 64},
+    ("ssdo", "fig7"): {"size": (112, 63), "rays": 64},
     ("ssdo", "fig13"): {"rays": 128},
     ("ssdo", "table1"): {"size": (160, 120), "repeats": 1},
     ("s3ho", "fig1"): {"size": (240, 135), "rays": 64},
