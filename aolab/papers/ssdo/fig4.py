@@ -48,8 +48,8 @@ def fig4(size: Size = (400, 225), frames: int = 43, rays: int = 128) -> Figure:
         ]
     claim = "As its sender turns out of the view, the bounce fades out smoothly"
     finding = (
-        f"Marched directions find the sender until it is thinner than a pixel: the default fades within {fade['SSDO']:.0f}°, "
-        f"as printed it fades within {fade['as printed']:.0f}°"
+        "Marched directions find the sender until it is thinner than a pixel: "
+        f"the bounce fades within {fade['SSDO']:.0f}° by default, and within {fade['as printed']:.0f}° as printed"
     )
     pictures = [
         (f"{degrees[i]:.0f}° around", _drawn(size, degrees[i], MODULES["SSDO"], ACCUMULATE).image) for i in chosen
