@@ -21,7 +21,7 @@ CROP = (slice(0.5, 1.0), slice(0.25, 0.75))  # rows and columns, of the picture:
 KINDS = {"a single view": "depth", "four more views": "views", "rays": ""}
 
 
-def fig7(size: Size = (480, 270), rays: int = 128) -> Figure:
+def fig7(size: Size = (320, 180), rays: int = 128) -> Figure:
     """The floor around a column that hides another: what the hidden one takes away, and what it bounces.
 
     The columns are smooth: flutes are finer than a pixel here, and the bounce among them is out of reach.
