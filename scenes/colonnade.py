@@ -22,7 +22,7 @@ PINK = Material((0.84, 0.16, 0.40), name="pink")
 
 
 def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0, fluted: bool = True) -> Scene:
-    """`count` columns per row; `hidden` adds the pink column; `sun_elevation` in degrees; `fluted` shafts or round ones."""
+    """`count` columns per row; `hidden` adds the pink column; `sun_elevation` in degrees; `fluted` or round shafts."""
     in_range("colonnade", count=(count, 2, 50), sun_elevation=(sun_elevation, 1, 90))
     elevation, azimuth = np.radians((sun_elevation, -125))  # from behind the camera, to its left
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))

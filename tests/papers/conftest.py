@@ -25,8 +25,8 @@ EDITS = {
     "half the reach": (("lib/march.glsl", "/ float(steps);", "/ float(2 * steps);"),),
     "thin surfaces": (("occluders/depth.glsl", "- 0.5 * thickness) < 0.5", "- 0.05 * thickness) < 0.05"),),
     "solids without a back": (("lib/solids.glsl", "isBackground(solid.y);", "true;"),),
-    "no further views": (("occluders/views.glsl", "k <= views; ++k", "k <= views - 4; ++k"),),
-    "no limit to the segment": (("pipeline/direct.frag", "min(radius, distance(", "max(radius, distance("),),
+    "no further views": (("occluders/views.glsl", "k < views; ++k", "k < views - 4; ++k"),),
+    "no limit to the segment": (("ssdo.lights.frag", "min(reach, distance(", "max(reach, distance("),),
     # senders
     "no cosines": (("lib/senders.glsl", FORM_FACTOR, "1.0 / clamped"),),
     "senders of twice the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 2.0 * PI"),),

@@ -93,7 +93,7 @@ def _post() -> Scene:
 
 
 def _lit_on_screen(scene: Scene, size: Size, radius: float, occluders: str) -> Frame:
-    settings = {"occluders": occluders, "light_steps": LIGHT_STEPS, "bias": 0.002}
+    settings = {"occluders": occluders, "light_steps": LIGHT_STEPS, "bias": 0.002, "falloff": 0.0, "filter": "none"}
     return shared_lab().render(scene, "ssdo", size=size, radius=radius, **settings)
 
 
