@@ -21,20 +21,20 @@ PAVING = Material((0.62, 0.57, 0.50), name="paving")
 PINK = Material((0.84, 0.16, 0.40), name="pink")
 
 
-def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0) -> Scene:
-    """`count` columns per row; `hidden` adds the pink column; `sun_elevation` in degrees."""
+def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0, fluted: bool = True) -> Scene:
+    """`count` columns per row; `hidden` adds the pink column; `sun_elevation` in degrees; `fluted` or round shafts."""
     in_range("colonnade", count=(count, 2, 50), sun_elevation=(sun_elevation, 1, 90))
     elevation, azimuth = np.radians((sun_elevation, -125))  # from behind the camera, to its left
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
     sun = DirectionalLight(tuple(-np.array(towards)), (3.1, 2.25, 1.4))
     sea = Environment.sky((0.10, 0.20, 0.44), (0.40, 0.47, 0.54), (0.07, 0.13, 0.18))
-    instances = _temple(count) + ((_pink(),) if hidden else ())
+    instances = _temple(count, fluted) + ((_pink(fluted),) if hidden else ())
     return Scene(instances, (sun,), sea, Camera(tuple(EYE), (-1.75, 2.05, 0), fov=49), name="colonnade")
 
 
 @cache
-def _temple(count: int) -> tuple[Instance, ...]:
-    shaft = column(HEIGHT, RADIUS, MARBLE)
+def _temple(count: int, fluted: bool) -> tuple[Instance, ...]:
+    shaft = column(HEIGHT, RADIUS, MARBLE, fluted=fluted)
     length = (count - 1) * SPACING
     lintel = beam(_entablature(), length + 4 * RADIUS, MARBLE, "entablature")
     temple = []
@@ -48,9 +48,9 @@ def _temple(count: int) -> tuple[Instance, ...]:
 
 
 @cache
-def _pink() -> Instance:
+def _pink(fluted: bool) -> Instance:
     x, _, z = EYE + BEHIND * (FRONT - EYE)
-    return Instance(column(HEIGHT - 0.6, RADIUS, PINK, square_ends=False), placed(x, -0.01, z), "hidden")
+    return Instance(column(HEIGHT - 0.6, RADIUS, PINK, square_ends=False, fluted=fluted), placed(x, -0.01, z), "hidden")
 
 
 def _entablature() -> list[tuple[float, float]]:

@@ -1,3 +1,3 @@
-"""The figures and tables of the papers. Each paper is a folder; its table `FIGURES` lists a function a figure."""
+"""The figures and tables of the papers: a paper a folder, a figure a file; `FIGURES` lists the functions by name."""
 
 PAPERS = ("ssdo", "s3ho")

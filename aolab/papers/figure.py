@@ -1,69 +1,90 @@
-"""What a reproduced figure is: a picture, the numbers behind the paper's claim, and whether they hold it."""
+"""A reproduced figure: a picture, numbers, and the bounds on them that the paper's claim needs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
 from PIL import Image
 
-from ..pipeline.frame import Frame
-from ..scene.view import View
-from ..truth.points import pixel_rays
+from ..pictures.sheet import contact_sheet
 
-LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear sRGB (ITU-R BT.709)
+
+@dataclass(frozen=True)
+class Need:
+    """A number that a claim needs between two bounds, both excluded. NaN lies between no bounds."""
+
+    what: str
+    value: float
+    above: float = -inf
+    below: float = inf
+
+    @property
+    def met(self) -> bool:
+        return self.above < self.value < self.below
+
+    @property
+    def bounds(self) -> str:
+        sides = (("above", self.above), ("below", self.below))
+        return " and ".join(f"{side} {bound:.3g}" for side, bound in sides if abs(bound) < inf)
+
+    def __str__(self) -> str:
+        return f"{self.what} is {self.value:.3g}, needed {self.bounds}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain values for JSON; a missing bound is None."""
+        above, below = (bound if abs(bound) < inf else None for bound in (self.above, self.below))
+        return {"what": self.what, "value": float(self.value), "above": above, "below": below, "met": self.met}
+
+
+def verdict(needs: Sequence[Need]) -> str:
+    """Whether the claim holds; if it does not, by how much."""
+    unmet = [str(need) for need in needs if not need.met]
+    return f"DOES NOT HOLD: {'; '.join(unmet)}" if unmet else "holds"
 
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """`numbers` are plain values for JSON; `claim` is the paper's, in a sentence that they can hold or refute."""
+    """`claim` is the paper's, in a sentence; it holds if all `needs` are met. `numbers` are plain values for JSON.
+
+    `finding` is a sentence that the numbers add to the claim, or nothing.
+    """
 
     picture: Image.Image
     numbers: dict[str, Any]
     claim: str
-    holds: bool
+    needs: tuple[Need, ...]
+    finding: str = ""
+
+    @property
+    def holds(self) -> bool:
+        return all(need.met for need in self.needs)
+
+    @property
+    def unmet(self) -> set[str]:
+        """The names of the needs that are not met."""
+        return {need.what for need in self.needs if not need.met}
+
+    @property
+    def verdict(self) -> str:
+        return verdict(self.needs)
 
 
-def rmse(one: np.ndarray, other: np.ndarray, where: np.ndarray) -> float:
-    """Root mean square difference of two (H, W[, channels]) arrays over the pixels `where` (H, W)."""
-    return float(np.sqrt(np.mean((one - other)[where] ** 2)))
+def figure(
+    heading: str,
+    claim: str,
+    needs: Sequence[Need],
+    numbers: dict[str, Any],
+    pictures: Sequence[tuple[str, np.ndarray]],
+    columns: int,
+    finding: str = "",
+) -> Figure:
+    """The figure whose picture shows captioned `pictures` in rows of `columns`, under `title`."""
+    picture = contact_sheet(pictures, columns, title=title(heading, claim, needs, finding))
+    return Figure(picture, numbers, claim, tuple(needs), finding)
 
 
-def noise(draws: Sequence[np.ndarray], where: np.ndarray) -> float:
-    """Standard deviation among `draws`, (H, W[, channels]) of different seeds, over their mean; both of all `where`."""
-    seen = np.array([draw[where] for draw in draws], np.float64)
-    return float(np.sqrt(seen.var(axis=0, ddof=1).mean()) / seen.mean())
-
-
-def chromaticity(rgb: np.ndarray) -> np.ndarray:
-    """(..., 3): the shares of red, green and blue."""
-    return rgb / np.maximum(rgb.sum(axis=-1, keepdims=True), 1e-12)
-
-
-def world_positions(frame: Frame) -> np.ndarray:
-    """(H, W, 3): the surface at each pixel's centre; the eye where nothing was drawn."""
-    assert frame.scene is not None  # it was rendered
-    view = View(frame.camera, frame.size, frame.scene.bounds)
-    world_from_view = np.linalg.inv(view.camera.view_from_world)
-    width, height = view.size
-    rays = pixel_rays(view, np.arange(width * height)).reshape(height, width, 3)
-    depth = np.where(frame.mask, -frame["viewZ"], 0)
-    return rays * depth[..., None] @ world_from_view[:3, :3].T + world_from_view[:3, 3]
-
-
-def pixel_at(frame: Frame, point: Sequence[float]) -> tuple[int, int]:
-    """(column, row) of the pixel that shows what is nearest to the world-space `point`."""
-    distance = np.linalg.norm(world_positions(frame) - np.asarray(point), axis=-1)
-    row, column = np.unravel_index(np.where(frame.mask, distance, np.inf).argmin(), distance.shape)
-    return int(column), int(row)
-
-
-def closeup(picture: np.ndarray, middle: tuple[float, float], times: int) -> np.ndarray:
-    """A part of a picture (H, W, 3), `times` enlarged to its size, around `middle`: x, y as shares of the picture's."""
-    height, width = picture.shape[:2]
-    left, top = (
-        int(np.clip(share * side - side / (2 * times), 0, side - side // times - 1))
-        for share, side in zip(middle, (width, height), strict=True)
-    )
-    part = picture[top : top + height // times + 1, left : left + width // times + 1]
-    return part.repeat(times, axis=0).repeat(times, axis=1)[:height, :width]
+def title(heading: str, claim: str, needs: Sequence[Need], finding: str = "") -> str:
+    """The text above a figure's picture: it gives the verdict, as the numbers do."""
+    return f"{heading}. Claim: {claim}. Verdict: {verdict(needs)}." + (f" Finding: {finding}." if finding else "")

@@ -1,4 +1,4 @@
-"""`aolab reproduce`: a paper's figures and tables, drawn and judged, each as FIGURE.png and FIGURE.json."""
+"""`aolab reproduce`: a paper's figures and tables, and whether their claims hold, as FIGURE.png and FIGURE.json."""
 
 import json
 from collections.abc import Callable, Iterator
@@ -14,14 +14,14 @@ from ..version import __version__
 from . import PAPERS
 from .figure import Figure
 
-LEAST_SIZE = (96, 54)  # pixels: in smaller pictures there are no pixels left of what some figures look at
+LEAST_SIZE = (96, 54)  # pixels: smaller pictures have no pixels on the surfaces that some figures measure
 
 
 def figures(paper: str, figure: str | None = None) -> dict[str, Callable[..., Figure]]:
     """{name: function} of a paper's figures and tables, or of one of them.
 
-    Each function takes `size`, (width, height) in pixels of one picture, or of a table's largest measurement, and
-    has a default for it. Raises `ParameterError` for an unknown paper or figure.
+    Each function takes `size`, (width, height) in pixels of one picture, or of a table's largest measurement; it has
+    a default. Raises `ParameterError` for an unknown paper or figure.
     """
     if paper not in PAPERS:
         raise ParameterError(f"no paper '{paper}'{suggestion(paper, PAPERS)}")
@@ -36,9 +36,9 @@ def figures(paper: str, figure: str | None = None) -> dict[str, Callable[..., Fi
 def reproduce(
     paper: str, figure: str | None, folder: Path, size: Size | None = None
 ) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Draw a paper's figures, or one, and write FIGURE.png and FIGURE.json into `folder`, which is made if need be.
+    """Draw a paper's figures, or one of them, and write FIGURE.png and FIGURE.json into `folder`; make it if need be.
 
-    Yields (name, the JSON's content) as each is written. Raises `ParameterError` and `FileError` before the work.
+    Yields (name, the JSON's content) after each is written. Raises `ParameterError` and `FileError` before the work.
     """
     chosen = figures(paper, figure)
     arguments = {} if size is None else {"size": _checked(size)}
@@ -56,6 +56,9 @@ def reproduce(
             "figure": name,
             "claim": result.claim,
             "holds": result.holds,
+            "verdict": result.verdict,
+            "finding": result.finding,
+            "needs": [need.to_dict() for need in result.needs],
             "numbers": result.numbers,
             "renderer": context.renderer(),
             "aolab": __version__,

@@ -1,4 +1,4 @@
-"""What methods cost, beside each other: times in turns, and ratios as medians over the turns."""
+"""The costs of methods beside each other: times in turns, and ratios as medians over the turns."""
 
 import statistics
 from collections.abc import Callable, Hashable, Mapping
@@ -8,7 +8,7 @@ from typing import TypeVar
 from ..pipeline.frame import Frame
 
 Key = TypeVar("Key", bound=Hashable)
-REPEATS = 9  # turns, of which the median is told
+REPEATS = 9  # turns; figures give their median
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,8 @@ class Cost:
 def in_turns(draws: Mapping[Key, Callable[[], Frame]], repeats: int) -> dict[Key, list[Cost]]:
     """The costs of `repeats` frames of each.
 
-    Every turn draws one frame of each, so that what else the machine does meets all of them. One more turn, before
-    these, compiles the shaders and is left out.
+    Every turn draws one frame of each, so that the other work of the machine meets all of them. The first turn
+    compiles the shaders; its costs are left out.
     """
     costs: dict[Key, list[Cost]] = {name: [] for name in draws}
     for turn in range(repeats + 1):

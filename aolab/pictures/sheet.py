@@ -1,5 +1,6 @@
 """Contact sheets (pictures side by side with captions), and tables drawn as pictures."""
 
+import itertools
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ from ..errors import ParameterError
 from .buffers import buffer_picture, buffer_pixels, first_buffer, framed, scale_of
 from .display import pixels_of, titled
 
-MARGIN, CAPTION, LINE, CELL = 8, 26, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
+MARGIN, LINE, CELL = 8, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
 _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
 
 
@@ -33,20 +34,20 @@ def contact_sheet(pictures: Sequence[Any], columns: int = 2, *, title: str = "")
     cells = [(caption, pixels_of(picture)) for caption, picture in pairs]
     height, width = (max(pixels.shape[axis] for _, pixels in cells) for axis in (0, 1))
     columns = min(columns, len(cells))
-    rows = -(-len(cells) // columns)
-    cell = width + MARGIN, height + CAPTION + MARGIN
     font = ImageFont.load_default(size=15)
-    lines = _wrapped(title, columns * cell[0] - MARGIN, font)
-    top = MARGIN + LINE * len(lines)
-    sheet = Image.new("RGB", (columns * cell[0] + MARGIN, rows * cell[1] + top), _PAPER)
+    captions = [_wrapped(caption, width, font) or [""] for caption, _ in cells]
+    rows = [captions[first : first + columns] for first in range(0, len(captions), columns)]
+    lines = _wrapped(title, columns * (width + MARGIN) - MARGIN, font)
+    heights = [height + LINE * max(map(len, row)) + MARGIN for row in rows]
+    *tops, bottom = itertools.accumulate(heights, initial=MARGIN + LINE * len(lines))
+    sheet = Image.new("RGB", (columns * (width + MARGIN) + MARGIN, bottom), _PAPER)
     draw = ImageDraw.Draw(sheet)
-    for number, line in enumerate(lines):
-        draw.text((MARGIN + 2, MARGIN + number * LINE), line, _INK, font=font)
-    for index, (caption, pixels) in enumerate(cells):
-        x, y = MARGIN + index % columns * cell[0], top + index // columns * cell[1]
+    _write(draw, lines, (MARGIN + 2, MARGIN), font)
+    for index, (_, pixels) in enumerate(cells):
+        x, y = MARGIN + index % columns * (width + MARGIN), tops[index // columns]
         enlarged = max(1, min(width // pixels.shape[1], height // pixels.shape[0]))
         sheet.paste(Image.fromarray(pixels.repeat(enlarged, axis=0).repeat(enlarged, axis=1)), (x, y))
-        draw.text((x + 2, y + height + 4), caption, _INK, font=font)
+        _write(draw, captions[index], (x + 2, y + height + 4), font)
     return sheet
 
 
@@ -86,8 +87,7 @@ def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
     top = MARGIN + LINE * len(lines)
     picture = Image.new("RGB", (sum(widths) + 2 * MARGIN, top + LINE * len(rows) + MARGIN), _PAPER)
     draw = ImageDraw.Draw(picture)
-    for number, line in enumerate(lines):
-        draw.text((MARGIN + 2, MARGIN + number * LINE), line, _INK, font=font)
+    _write(draw, lines, (MARGIN + 2, MARGIN), font)
     for number, row in enumerate(rows):
         y, right = top + number * LINE, MARGIN
         for column, (text, width) in enumerate(zip(row, widths, strict=True)):
@@ -98,7 +98,15 @@ def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
     return picture
 
 
-def _wrapped(text: str, width: float, font: ImageFont.FreeTypeFont | ImageFont.ImageFont) -> list[str]:
+_Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
+
+
+def _write(draw: ImageDraw.ImageDraw, lines: list[str], corner: tuple[int, int], font: _Font) -> None:
+    for number, line in enumerate(lines):
+        draw.text((corner[0], corner[1] + number * LINE), line, _INK, font=font)
+
+
+def _wrapped(text: str, width: float, font: _Font) -> list[str]:
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word

@@ -109,15 +109,17 @@ def column(
     *,
     flutes: int = 20,
     finesse: int = 4,
+    fluted: bool = True,
     square_ends: bool = True,
 ) -> Mesh:
     """A column that stands on y = 0: plinth, base, fluted shaft with entasis, echinus, abacus.
 
     `radius` is the shaft's at its foot; the plinth and the abacus, square or round, reach to 1.35 of it. `flutes` in
-    fours; `finesse` is how many points a flute has, and rings a moulding.
+    fours; `finesse` is how many points a flute has, and rings a moulding. Without `fluted` the shaft is round.
     """
     points = flutes * finesse
-    hollow = 0.09 * np.sin(np.pi * (np.arange(points) % finesse) / finesse)  # of the radius: shallower than Doric
+    depth = 0.09 if fluted else 0.0  # of the radius: shallower than Doric
+    hollow = depth * np.sin(np.pi * (np.arange(points) % finesse) / finesse)
     top = height / radius  # everything below in radii
 
     def outline(size: float, squareness: float = 0.0, fluting: float = 0.0) -> np.ndarray:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import Error, Notice, ParameterError
+from ..papers import PAPERS
 from . import options
 
 if TYPE_CHECKING:
@@ -293,7 +294,7 @@ def tune(
 
 @app.command()
 def reproduce(
-    paper: Annotated[str, typer.Argument(help="The paper, by its method's name: ssdo.")],
+    paper: Annotated[str, typer.Argument(help=f"The paper, by its method's name: {', '.join(PAPERS)}.")],
     figure: Annotated[
         str | None, typer.Argument(help="As in fig7 or table1. Default: all of them.", show_default=False)
     ] = None,
@@ -313,7 +314,7 @@ def reproduce(
     for name, content in drawn(paper, figure, folder, parse_size(size) if size else None):
         found.append(content)
         if not as_json:
-            print(f"{folder / name}.png: {'holds' if content['holds'] else 'DOES NOT HOLD'}: {content['claim']}")
+            print(f"{folder / name}.png: {content['claim']}. {content['verdict']}")
     if as_json:
         print(json.dumps(found, indent=2))
 

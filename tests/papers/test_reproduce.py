@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 
 from aolab import FileError, ParameterError
+from aolab.papers import PAPERS
 from aolab.papers.reproduce import figures, reproduce
 from aolab.shell import cli
 
@@ -27,8 +28,9 @@ def test_a_figure_is_a_picture_and_its_numbers(gl, tmp_path):
     assert size[0] > 2 * SMALL[0]
     assert size[1] > 2 * SMALL[1]
     assert content["claim"].startswith("A smaller radius")
-    assert content["holds"] is True
-    assert len(content["numbers"]["share_in_shadow"]) == 4
+    assert content["holds"] is all(need["met"] for need in content["needs"])
+    assert content["verdict"].startswith("holds" if content["holds"] else "DOES NOT HOLD")
+    assert len(content["numbers"]["radius"]) == 4
     assert {path.name for path in folder.iterdir()} == {"fig14.png", "fig14.json"}
 
 
@@ -69,9 +71,16 @@ def shell(monkeypatch, *arguments) -> object:
 
 def test_the_shell_says_what_holds(gl, monkeypatch, capsys, tmp_path):
     assert shell(monkeypatch, "ssdo", "fig14", "--size", "160x90", "-o", tmp_path) == 0
-    assert capsys.readouterr().out.startswith(f"{tmp_path}/fig14.png: holds: A smaller radius")
+    printed = capsys.readouterr().out
+    assert printed.startswith(f"{tmp_path}/fig14.png: A smaller radius")
+    assert printed.rstrip().endswith(written(tmp_path, "fig14")[1]["verdict"])
     assert shell(monkeypatch, "ssdo", "fig14", "--size", "160x90", "-o", tmp_path, "--json") == 0
     assert json.loads(capsys.readouterr().out) == [written(tmp_path, "fig14")[1]]
+
+
+def test_the_shells_help_names_every_paper(monkeypatch, capsys):
+    assert shell(monkeypatch, "--help") == 0
+    assert ", ".join(PAPERS) in capsys.readouterr().out
 
 
 def test_the_shell_refuses_in_one_line(monkeypatch, capsys, tmp_path):

@@ -1,152 +1,57 @@
-"""The claims of SSDO's figures, held by their numbers at low resolution; times are told, and not asserted."""
-
-from collections.abc import Callable
-from functools import cache
+"""SSDO's figures at low resolution: what holds, and the numbers that a claim does not need. Times are not asserted."""
 
 import numpy as np
 import pytest
 
 from aolab.papers import ssdo
-from aolab.papers.figure import Figure
-from aolab.papers.ssdo.cost import PAPER
+from aolab.papers.ssdo.table1 import PAPER
 
-SIZE = (160, 90)
+pytestmark = pytest.mark.figures
 
-
-@pytest.fixture(scope="module")
-def draw(gl) -> Callable[..., Figure]:
-    """`draw("fig3", ...)`, once for all tests that ask for the same."""
-    return cache(lambda name, **arguments: ssdo.FIGURES[name](**{"size": SIZE, **arguments}))
+# marched directions find a sender until it is thinner than a pixel: the bounce stays right, and then drops
+UNMET = {"fig4": {"the fade in degrees, SSDO"}}
 
 
 def test_the_table_names_every_figure_that_the_module_can_show():
     assert list(ssdo.FIGURES) == ["fig1", "fig3", "fig4", "fig6", "fig7", "fig13", "fig14", "table1"]
 
 
-# --- figure 3
+@pytest.mark.parametrize("name", ["fig3", "fig4", "fig6", "fig7", "fig13", "fig14"])
+def test_the_claims(draw, name):
+    figure = draw("ssdo", name)
+    assert figure.unmet == UNMET.get(name, set()), figure.verdict
 
 
-def test_fig3_a_shadow_has_the_colour_of_the_light_from_the_open_side(draw):
-    turns = draw("fig3").numbers["turn_to_the_open_sides_colour"]
-    for side in ("open to the left", "open to the right"):
-        assert turns["SSDO"][side] == pytest.approx(turns["rays"][side], abs=0.15)
-        assert turns["rays"][side] > 0.5
+def test_fig4_the_default_keeps_the_bounce_longer_than_the_paper(draw):
+    numbers = draw("ssdo", "fig4").numbers
+    at_80_degrees = np.searchsorted(numbers["degrees"], 80)
+    assert numbers["bounce"]["SSDO"][at_80_degrees] > 0.9
+    assert numbers["bounce"]["as printed"][at_80_degrees] < 0.4
 
 
-def test_fig3_ssaos_shadows_have_the_colour_of_the_open_floor(draw):
-    turns = draw("fig3").numbers["turn_to_the_open_sides_colour"]
-    assert [*turns["SSAO"].values(), *turns["none"].values()] == pytest.approx([0] * 4, abs=0.01)
-
-
-def test_fig3_the_yellow_box_throws_yellow_light(draw):
-    blue = draw("fig3").numbers["blue_over_red_of_the_bounce"]
-    assert blue["at the pale box"] > 0.6
-    assert blue["at the yellow box"] < 0.2
-    assert draw("fig3").holds
-
-
-# --- figure 4
-
-
-def test_fig4_the_bounce_fades_without_a_jump(draw):
-    figure = draw("fig4")
-    bounce = np.array(figure.numbers["bounce_of_the_first_frames"])
-    assert bounce[:10].min() > 0.8
-    assert bounce[-3:].max() == 0
-    assert figure.numbers["largest_change"] < 0.25
-    assert figure.numbers["largest_change_at_half_the_step"] < 0.7 * figure.numbers["largest_change"]
-    assert figure.holds
-
-
-# --- figure 6
-
-
-@pytest.fixture
-def shadows(draw) -> Figure:
-    return draw("fig6", size=(240, 135))
-
-
-@pytest.mark.parametrize("occluders", ["depth", "layers"])
-def test_fig6_the_shadow_is_as_long_as_the_segment_reaches(shadows, occluders):
-    found = shadows.numbers[occluders]
-    lengths = [one["length"] for one in found]
-    assert lengths == pytest.approx([one["length_of_a_segment"] for one in found], rel=0.1)
-    assert lengths[0] < 0.5 * lengths[1] < 0.5 * lengths[2]
-
-
-def test_fig6_one_layer_takes_the_post_to_be_as_thick_as_the_radius(shadows):
-    false = [one["false"] for one in shadows.numbers["depth"]]
-    assert false[0] < 0.5 * false[1] < 0.5 * false[2]
-    assert false[2] > 1  # more than all of the true shadow
-
-
-def test_fig6_peeled_layers_have_the_ray_traced_shadow(shadows):
-    found = shadows.numbers["layers"]
-    assert max(one["false"] for one in found) < 0.01
-    assert found[-1]["found"] > 0.85
-    assert shadows.holds
-
-
-# --- figure 7
-
-
-@pytest.mark.parametrize("what", ["shadow_of_the_hidden_column", "bounce_of_the_hidden_column"])
-def test_fig7_what_is_hidden_takes_part_with_more_views_and_not_without(draw, what):
-    figure = draw("fig7", size=(160, 90), rays=32)
-    shares = figure.numbers[what]
-    assert shares["a single view"] == 0
-    assert shares["four more views"] == pytest.approx(1, abs=0.35)
-    assert figure.holds
-
-
-# --- figure 13
-
-
-def test_fig13_each_step_takes_an_error_away(draw):
-    figure = draw("fig13", rays=64)
-    error = figure.numbers["rmse"]
-    assert error["none"] > error["SSAO"] > error["SSDO"] > error["SSDO + 1 bounce of rays"]
-    assert error["SSDO + 1 bounce of rays"] < 0.6 * error["none"]
-    assert figure.numbers["falls_with_senders"]["rays"]
-    assert figure.holds
-
-
-def test_fig13_patches_of_the_first_guess_send_too_much(draw):
-    figure = draw("fig13", rays=64)
-    assert not figure.numbers["falls_with_senders"]["patches"]
-    assert figure.numbers["rmse"]["SSDO + 1 bounce of patches"] < figure.numbers["rmse"]["none"]
+def test_fig13_the_paper_patches_send_too_much_if_directions_are_marched(draw):
+    error = draw("ssdo", "fig13").numbers["rmse"]
+    assert error["SSDO + 1 bounce of patches, 8 steps"] > 1.3 * error["SSDO + 1 bounce"]
 
 
 def test_fig13_among_white_surfaces_occlusion_without_a_bounce_is_worse_than_none(draw):
-    error = draw("fig13", rays=64).numbers["rmse_among_white"]
-    assert error["SSAO"] > error["none"] > error["SSDO + 1 bounce of rays"]
-
-
-# --- figure 14
-
-
-def test_fig14_the_influence_grows_with_the_radius(draw):
-    figure = draw("fig14")
-    for name in ("share_in_shadow", "share_with_bounce"):
-        shares = figure.numbers[name]
-        assert (np.diff(shares) > 0.02).all()
-        assert shares[-1] > 4 * shares[0]
-    assert figure.holds
+    error = draw("ssdo", "fig13").numbers["rmse_among_white"]
+    assert error["SSAO"] > error["none"] > error["SSDO + 1 bounce"]
 
 
 # --- what is measured: only that it is
 
 
 def test_fig1_is_the_largest_scene(draw):
-    figure = draw("fig1", repeats=1)
+    figure = draw("ssdo", "fig1")
     assert figure.numbers["triangles"] > 5 * figure.numbers["fewer_triangles"]
     assert set(figure.numbers["milliseconds"]) == {"passes", "passes_with_fewer_triangles", "frame"}
     assert min(figure.numbers["milliseconds"].values()) > 0
-    assert figure.numbers["renderer"] in figure.claim + str(figure.numbers)
+    assert figure.numbers["renderer"]
 
 
 def test_table1_stands_beside_the_papers(draw):
-    figure = draw("table1", size=(160, 120), repeats=1)
+    figure = draw("ssdo", "table1")
     rows = figure.numbers["rows"]
     assert [(*row["size"], row["directions"]) for row in rows] == [
         (102, 77, 8),

@@ -3,7 +3,7 @@
 import numpy as np
 from PIL import Image
 
-from aolab.pictures.sheet import CAPTION, LINE, MARGIN, contact_sheet, gray, table
+from aolab.pictures.sheet import LINE, MARGIN, contact_sheet, gray, table
 
 RED = np.full((20, 300, 3), (255, 0, 0), np.uint8)
 
@@ -18,10 +18,16 @@ def ink(picture: Image.Image, rows: slice) -> int:
 
 def test_pictures_are_in_rows_with_their_captions():
     sheet = contact_sheet([("one", RED), ("two", RED), ("three", RED)], 2)
-    assert sheet.size == (2 * (300 + MARGIN) + MARGIN, 2 * (20 + CAPTION + MARGIN) + MARGIN)
+    assert sheet.size == (2 * (300 + MARGIN) + MARGIN, 2 * (20 + LINE + MARGIN) + MARGIN)
     assert count(sheet, (255, 0, 0)) == 3 * RED[..., 0].size
     assert ink(sheet, slice(0, MARGIN + 20)) == 0
-    assert ink(sheet, slice(MARGIN + 20, MARGIN + 20 + CAPTION)) > 50
+    assert ink(sheet, slice(MARGIN + 20, MARGIN + 20 + LINE)) > 50
+
+
+def test_a_caption_is_wrapped_to_its_picture_and_not_into_the_next():
+    plain, long = contact_sheet([("", RED)], 1), contact_sheet([("seven words " * 12, RED), ("", RED)], 2)
+    assert long.height - plain.height >= 2 * LINE
+    assert not (np.asarray(long)[:, 300 + 2 * MARGIN :] < 128).all(axis=-1).any()
 
 
 def test_a_title_is_wrapped_above_the_pictures():

@@ -58,7 +58,7 @@ class Views(OccluderKind):
 def _uniforms(tiles: list[View], view: View) -> dict[str, object]:
     """The way from the camera's view space to the tiles of the atlas, and back."""
     there_from_here = [tile.camera.view_from_world @ np.linalg.inv(view.camera.view_from_world) for tile in tiles]
-    tan_x, tan_y = tiles[0].camera.tan_half_fov(tiles[0].size)
+    tan_x, tan_y = tiles[0].camera.half_extent(tiles[0].size)
     half = np.array(tiles[0].size) / 2
     return {
         "tile_from_ray": (1 / tan_x, 1 / tan_y, 0.0, 0.0),

@@ -7,10 +7,14 @@ drawings, of what `aolab.glyph` shows for any pixel.
 from collections.abc import Callable
 
 from ..figure import Figure
-from .atrium import fig1, fig9
-from .cost import table1
-from .light import fig3, fig5, fig6
-from .probe import fig7, fig8
+from .fig1 import fig1
+from .fig3 import fig3
+from .fig5 import fig5
+from .fig6 import fig6
+from .fig7 import fig7
+from .fig8 import fig8
+from .fig9 import fig9
+from .table1 import table1
 
 FIGURES: dict[str, Callable[..., Figure]] = {
     "fig1": fig1,

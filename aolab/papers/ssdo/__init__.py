@@ -7,9 +7,14 @@ are drawings; 9 to 12 are about section 5, which is not part of the module.
 from collections.abc import Callable
 
 from ..figure import Figure
-from .cost import fig1, table1
-from .hidden import fig6, fig7
-from .light import fig3, fig4, fig13, fig14
+from .fig1 import fig1
+from .fig3 import fig3
+from .fig4 import fig4
+from .fig6 import fig6
+from .fig7 import fig7
+from .fig13 import fig13
+from .fig14 import fig14
+from .table1 import table1
 
 FIGURES: dict[str, Callable[..., Figure]] = {
     "fig1": fig1,

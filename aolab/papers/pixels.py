@@ -1,0 +1,49 @@
+"""Measures over pixels, and where in the scene pixels are."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ..pipeline.frame import Frame
+from ..scene.view import View
+from ..truth.points import pixel_rays
+
+LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear sRGB (ITU-R BT.709)
+
+
+def rmse(one: np.ndarray, other: np.ndarray, where: np.ndarray) -> float:
+    """Root mean square difference of two (H, W[, channels]) arrays over the pixels `where` (H, W)."""
+    return float(np.sqrt(np.mean((one - other)[where] ** 2)))
+
+
+def noise(draws: Sequence[np.ndarray], where: np.ndarray) -> float:
+    """Standard deviation among `draws`, (H, W[, channels]) of different seeds, over their mean; both of all `where`."""
+    seen = np.array([draw[where] for draw in draws], np.float64)
+    return float(np.sqrt(seen.var(axis=0, ddof=1).mean()) / seen.mean())
+
+
+def chromaticity(rgb: np.ndarray) -> np.ndarray:
+    """(..., 3): the shares of red, green and blue."""
+    return rgb / np.maximum(rgb.sum(axis=-1, keepdims=True), 1e-12)
+
+
+def world_positions(frame: Frame) -> np.ndarray:
+    """(H, W, 3): the surface at each pixel's centre; the eye where nothing was drawn."""
+    view = view_of(frame)
+    world_from_view = np.linalg.inv(view.camera.view_from_world)
+    width, height = view.size
+    rays = pixel_rays(view, np.arange(width * height)).reshape(height, width, 3)
+    depth = np.where(frame.mask, -frame["viewZ"], 0)
+    return rays * depth[..., None] @ world_from_view[:3, :3].T + world_from_view[:3, 3]
+
+
+def pixel_at(frame: Frame, point: Sequence[float]) -> tuple[int, int]:
+    """(column, row) of the pixel that shows the surface nearest to the world-space `point`."""
+    distance = np.linalg.norm(world_positions(frame) - np.asarray(point), axis=-1)
+    row, column = np.unravel_index(np.where(frame.mask, distance, np.inf).argmin(), distance.shape)
+    return int(column), int(row)
+
+
+def view_of(frame: Frame) -> View:
+    assert frame.scene is not None  # it was rendered
+    return View(frame.camera, frame.size, frame.scene.bounds)

@@ -1,0 +1,114 @@
+"""Figures at low resolution, with the shaders as they are and with a shader that was broken on purpose."""
+
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from aolab.papers.figure import Figure
+from aolab.papers.reproduce import figures
+from aolab.pipeline.api import shared_lab
+
+THROUGH = "fract(0.618 * float(i) + 0.37 * float(receiver.set)) < 0.3"
+FORM_FACTOR = "rising * facing / (squaredDistance * clamped)"
+SENDER = "texture(sender, occluder.uv).rgb"
+LOBE = "max(shDot(shBasis(viewToLight), windowed), 0.0)"
+ADD = "addDirection(moments, viewDir, plain ? 1.0 - blocked : blocked);"
+
+# a shader's file, a text in it, and the text that takes its place; each breaks a method in one way
+EDITS = {
+    "30 % of blocked directions open": (
+        ("lib/march.glsl", "    return blocked;", f"    return blocked && !({THROUGH});"),
+        ("lib/march.glsl", "    return nearest;", f"    return {THROUGH} ? OPEN : nearest;"),
+    ),
+    "half the reach": (("lib/march.glsl", "/ float(steps);", "/ float(2 * steps);"),),
+    "thin surfaces": (("occluders/depth.glsl", "- 0.5 * thickness) < 0.5", "- 0.05 * thickness) < 0.05"),),
+    "solids without a back": (("lib/solids.glsl", "isBackground(solid.y);", "true;"),),
+    "no further views": (("occluders/views.glsl", "k < views; ++k", "k < views - 4; ++k"),),
+    "no limit to the segment": (("ssdo.lights.frag", "min(reach, distance(", "max(reach, distance("),),
+    # senders
+    "no cosines": (("lib/senders.glsl", FORM_FACTOR, "1.0 / clamped"),),
+    "senders of twice the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 2.0 * PI"),),
+    "senders of half the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 0.5 * PI"),),
+    "back-facing senders": (("lib/senders.glsl", "facing > 0.0 && rising > 0.0", "rising > 0.0"),),
+    "grey senders": (("occluders/depth.glsl", SENDER, f"vec3(dot({SENDER}, vec3(1.0 / 3.0)))"),),
+    "coefficients of three senders": (("s3ho.senders.frag", "= shClampedCosine(", "= 3.0 * shClampedCosine("),),
+    # the environment
+    "one direction for all": (("ssdo.frag", "octahedralUv(worldFrame * kernel[i].xyz)", "vec2(0.5)"),),
+    "the other side's light": (("ssdo.frag", "* kernel[i].xyz", "* (kernel[i].xyz * vec3(-1.0, -1.0, 1.0))"),),
+    "green light for all colours": (("s3ho.ambient.frag", "view_environment_sh[i]", "view_environment_sh[1]"),),
+    # SSAO
+    "occlusion of red alone": (("pipeline/ambient.frag", "* open", "* vec3(open, 1.0, 1.0)"),),
+    "occlusion of strong light": (("pipeline/ambient.frag", "* open", "* mix(1.0, open, min(irradiance.b, 1.0))"),),
+    # S3HO
+    "two bands": (
+        ("s3ho.transfer.glsl", "return withinBounds(", "return shWindow("),
+        ("s3ho.transfer.glsl", "- blocked);", "- blocked, vec4(1.0, 1.0, 0.0, 0.0));"),
+    ),
+    "half the occlusion": (("s3ho.transfer.glsl", "- blocked)", "- 0.5 * blocked)"),),
+    "a quarter of the samples": (("s3ho.moments.frag", ADD, f"if (i % 4 == 0) for (int k = 0; k < 4; ++k) {ADD}"),),
+    "no lobes": (("s3ho.direct.frag", LOBE, "max(dot(normal, viewToLight), 0.0)"),),
+    # SSBN
+    "cones around the normal": (("ssbn.ambient.frag", "> 1e-12 ? bent", "> 1e-12 ? worldNormal"),),
+}
+
+SMALL = {
+    ("ssdo", "fig1"): {"repeats": 1},
+    ("ssdo", "fig3"): {"size": (96, 54)},
+    ("ssdo", "fig4"): {"frames": 22, "rays": 64},
+    ("ssdo", "fig6"): {"size": (240, 135)},
+    ("ssdo", "fig7"): {"size": (112, 63), "rays": 64},
+    ("ssdo", "fig13"): {"rays": 128},
+    ("ssdo", "table1"): {"size": (160, 120), "repeats": 1},
+    ("s3ho", "fig1"): {"size": (240, 135), "rays": 64},
+    ("s3ho", "fig6"): {"size": (96, 54), "rays": 64},
+    ("s3ho", "fig7"): {"rays": 512, "seeds": 3},
+    ("s3ho", "fig8"): {"size": (80, 45), "rays": 128, "seeds": 3},
+    ("s3ho", "fig9"): {"size": (80, 45), "seeds": 3},
+    ("s3ho", "table1"): {"size": (96, 54), "repeats": 1},
+}
+
+
+def drawn(paper: str, name: str) -> Figure:
+    return figures(paper, name)[name](**{"size": (160, 90), **SMALL.get((paper, name), {})})
+
+
+@pytest.fixture(scope="session")
+def references(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A cache of references that all figures share: a broken shader does not change the truth."""
+    return tmp_path_factory.mktemp("references")
+
+
+@pytest.fixture(scope="session")
+def draw(gl: object, references: Path) -> Callable[[str, str], Figure]:
+    """`draw("ssdo", "fig3")`, once for all tests."""
+
+    def once(paper: str, name: str) -> Figure:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setenv("AOLAB_CACHE", str(references))
+            return drawn(paper, name)
+
+    return cache(once)
+
+
+@pytest.fixture
+def broken(shaders: Path, references: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str, str, str], Figure]:
+    """`broken("ssdo", "fig3", "no cosines")`: the figure with edited shaders. Each edit has to find its text."""
+    monkeypatch.setenv("AOLAB_CACHE", str(references))
+
+    def draw_with(paper: str, name: str, edit: str) -> Figure:
+        whole = {file: (shaders / file).read_text() for file, _, _ in EDITS[edit]}
+        for file, old, new in EDITS[edit]:
+            text = (shaders / file).read_text()
+            assert old in text, f"{file} does not contain {old!r} any more"
+            (shaders / file).write_text(text.replace(old, new))
+        shared_lab.cache_clear()  # the next one compiles the edited shaders
+        try:
+            return drawn(paper, name)
+        finally:
+            shared_lab.cache_clear()
+            for file, text in whole.items():
+                (shaders / file).write_text(text)
+
+    return draw_with

@@ -1,0 +1,39 @@
+"""A claim does not hold any more if its method is broken: each figure, drawn with edited shaders."""
+
+import pytest
+
+from aolab.papers import PAPERS
+from aolab.papers.reproduce import figures
+
+pytestmark = pytest.mark.figures
+
+OPEN = "30 % of blocked directions open"
+MUTATIONS = {
+    ("ssdo", "fig3"): (OPEN, "no cosines", "one direction for all", "the other side's light", "grey senders"),
+    ("ssdo", "fig4"): (OPEN, "no cosines", "back-facing senders"),
+    ("ssdo", "fig6"): ("no limit to the segment", "thin surfaces", "solids without a back"),
+    ("ssdo", "fig7"): (OPEN, "no further views", "senders of half the area"),
+    ("ssdo", "fig13"): (OPEN, "no cosines", "senders of twice the area", "one direction for all"),
+    ("ssdo", "fig14"): (OPEN, "no cosines", "half the reach"),
+    ("s3ho", "fig1"): (OPEN, "occlusion of red alone", "occlusion of strong light"),
+    ("s3ho", "fig3"): (OPEN, "two bands", "no lobes"),
+    ("s3ho", "fig5"): (OPEN, "two bands", "no lobes"),
+    ("s3ho", "fig6"): (OPEN, "two bands", "half the occlusion"),
+    ("s3ho", "fig7"): (OPEN, "two bands", "one direction for all", "a quarter of the samples"),
+    ("s3ho", "fig8"): ("two bands", "green light for all colours", "cones around the normal"),
+    ("s3ho", "fig9"): ("two bands", "a quarter of the samples", "coefficients of three senders"),
+}
+TIMED = {("ssdo", "fig1"), ("ssdo", "table1"), ("s3ho", "table1")}  # tests/papers/test_claims.py has theirs
+
+
+@pytest.mark.parametrize(
+    ("paper", "name", "edit"), [(*figure, edit) for figure, edits in MUTATIONS.items() for edit in edits]
+)
+def test_a_claim_fails_if_its_method_is_broken(draw, broken, paper, name, edit):
+    whole = draw(paper, name)
+    assert broken(paper, name, edit).unmet - whole.unmet
+
+
+def test_every_figure_has_two_mutations():
+    assert {*MUTATIONS} | TIMED == {(paper, name) for paper in PAPERS for name in figures(paper)}
+    assert min(map(len, MUTATIONS.values())) >= 2
