@@ -32,6 +32,7 @@ from .geometry import Geometry
 from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
+from .senders import senders
 from .shadows import ShadowMaps, draw_shadows
 from .state import FrameContext, SurfaceState
 
@@ -194,7 +195,7 @@ class Lab:
             lit = lighting.light(state, lights)
             buffers = {**state.large, **state.estimate, **lit}
             if bounce := module.bounce():
-                sender, sending = lighting.senders(state, lit, lights)
+                sender, sending = senders(state, lit, lights)
                 known = [Bindings("the lighting", {**lit, **sender}), Bindings("the estimate", state.estimate)]
                 gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
                 buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, gathered, view)}

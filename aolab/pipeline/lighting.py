@@ -9,8 +9,7 @@ import numpy as np
 
 from ..gl.bindings import Bindings
 from ..modules.estimate import Estimate
-from ..modules.occluders.base import Hidden
-from ..modules.passes import AMBIENT, DIRECT, Pass, reflect
+from ..modules.passes import Pass, reflect
 from ..scene.environment import Environment
 from ..scene.lights import DirectionalLight, PointLight, SpotLight
 from ..scene.scene import Scene
@@ -22,8 +21,6 @@ from .state import SurfaceState
 
 ToneMap = Literal["filmic", "linear"]
 
-_OPEN = replace(AMBIENT, constants={"occluded": False})
-_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
@@ -95,38 +92,6 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
             known = [Bindings("the surfaces", state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
             lit |= steps(frame, [step], known)
     return lit
-
-
-def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers, SurfaceState]:
-    """`sender`, the light that leaves each surface before any bounce, direct + ambient; and the state with the light of
-    hidden surfaces bound.
-
-    The occlusion of hidden surfaces was not estimated: the environment reaches them unhindered.
-    """
-    runner, view, occluders = state.frame.runner, state.frame.view, state.occluders
-    sent = {hidden.sender: _hidden_sender(runner, hidden, lights) for hidden in occluders.hidden}
-    bound = replace(occluders.bindings, textures={**occluders.bindings.textures, **sent})
-    sender = runner.run(_SENDER, [Bindings("the lighting", lit)], view.size)
-    return sender, replace(state, occluders=replace(occluders, bindings=bound))
-
-
-def _hidden_sender(runner: PassRunner, hidden: Hidden, lights: Lights) -> moderngl.Texture:
-    """The light that leaves hidden surfaces, in the regions of their views."""
-    size = hidden.views[0].sheet
-    lit = {**runner.targets(DIRECT, size), **runner.targets(_OPEN, size)}
-    sent = runner.targets(_SENDER, size)
-    for view in hidden.views:
-        known = [
-            Bindings("the surfaces", hidden.surfaces),
-            Bindings("the view", uniforms=view.uniforms),
-            *lights.seen_from(view),
-        ]
-        for step in (DIRECT, _OPEN):
-            targets = {name: lit[name] for name in step.outputs}
-            runner.run(step, known, size, targets=targets, region=view.region)
-        runner.run(_SENDER, [Bindings("the lighting", lit)], size, targets=sent, region=view.region)
-    runner.give_back(lit)
-    return sent["sender"]
 
 
 def bounced(runner: PassRunner, surfaces: Buffers, bounce: Buffers, view: View) -> Buffers:

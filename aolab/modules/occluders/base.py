@@ -48,12 +48,14 @@ class Drawing(Protocol):
 class Hidden:
     """Surfaces that the camera does not see but that send light: G-buffers of `views`, tiles of the same textures.
 
-    Once these surfaces are lit, the light that leaves them is bound as the texture `sender`.
+    `occluders` are the blockers that the estimate tests for these surfaces, in the space of their views. Once the
+    surfaces are lit, the light that leaves them is bound as the texture `sender`.
     """
 
     sender: str
     surfaces: Textures
     views: Sequence[View]
+    occluders: Bindings
 
 
 @dataclass(frozen=True)

@@ -32,8 +32,9 @@ class Layers(OccluderKind):
         # samplers must be bound: of a layer that is not there, the shader reads nothing
         for number, layer in enumerate([*behind, *[surfaces] * (MOST - 1 - len(behind))], start=1):
             textures |= {f"viewNormal{number}": layer["viewNormal"], f"sender{number}": layer["albedo"]}
-        hidden = [Hidden(f"sender{number}", layer, [view]) for number, layer in enumerate(behind, start=1)]
-        return Occluders(self.bindings(textures), hidden)
+        bindings = self.bindings(textures)
+        hidden = [Hidden(f"sender{number}", layer, [view], bindings) for number, layer in enumerate(behind, start=1)]
+        return Occluders(bindings, hidden)
 
 
 def packed(drawing: Drawing, nearest: moderngl.Texture, behind: list[Textures]) -> Textures:

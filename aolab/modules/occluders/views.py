@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...gl.bindings import Bindings
 from ...scene.camera import Camera
 from ...scene.scene import Scene
 from ...scene.view import View, matrix_bytes
@@ -42,7 +43,9 @@ class Views(OccluderKind):
             textures["viewsZ"] = packed(drawing, seen["viewZ"], behind)["layersZ"]
         if sends:
             textures |= {"viewsNormal": seen["viewNormal"], "viewsSender": seen["albedo"]}
-        hidden = [Hidden("viewsSender", seen, tiles)] if sends else []
+        # a surface that a further view sees is tested against that view's own depth: other views need a change of space
+        own = Bindings("the depth of a further view", includes={"occluders.glsl": "occluders/tile.glsl"})
+        hidden = [Hidden("viewsSender", seen, tiles, own)] if sends else []
         return Occluders(self.bindings(textures, _uniforms(tiles, view)), hidden)
 
     def _tiles(self, cameras: list[Camera], view: View) -> list[View]:

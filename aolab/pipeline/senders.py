@@ -1,0 +1,61 @@
+"""The light that leaves surfaces before a bounce: those that the camera sees, and hidden ones."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import moderngl
+
+from ..gl.bindings import Bindings
+from ..modules import Module
+from ..modules.occluders.base import Hidden
+from ..modules.passes import DIRECT, Pass
+from .lighting import Lights
+from .pass_runner import Buffers
+from .state import FrameContext, SurfaceState
+
+_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
+
+
+def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers, SurfaceState]:
+    """`sender`, direct + ambient light of the surfaces that the camera sees; and the state with the light of hidden
+    surfaces bound.
+    """
+    runner, view, occluders = state.frame.runner, state.frame.view, state.occluders
+    sent = {hidden.sender: _hidden_sender(state.frame, hidden, lights) for hidden in occluders.hidden}
+    bound = replace(occluders.bindings, textures={**occluders.bindings.textures, **sent})
+    sender = runner.run(_SENDER, [Bindings("the lighting", lit)], view.size)
+    return sender, replace(state, occluders=replace(occluders, bindings=bound))
+
+
+def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights) -> moderngl.Texture:
+    """The light that leaves hidden surfaces, in the regions of their views.
+
+    The environment's part is that of the module's own estimate, of one sample set and without filter. Samples towards
+    lights are left out.
+    """
+    runner, size = frame.runner, hidden.views[0].sheet
+    passes = _passes(frame.module)
+    targets = [runner.targets(step, size) for step in passes]
+    for view in hidden.views:
+        known = [
+            Bindings("the surfaces", hidden.surfaces),
+            Bindings("the view", uniforms=view.uniforms),
+            hidden.occluders,
+            frame.parameters,
+            frame.samples(frame.seeds[0]),
+            *lights.seen_from(view),
+        ]
+        made: Buffers = {}
+        for step, outputs in zip(passes, targets, strict=True):
+            before = Bindings("the passes before", made)
+            made = made | runner.run(step, [*known, before], size, targets=outputs, region=view.region)
+    sender = targets.pop()["sender"]
+    for outputs in targets:
+        runner.give_back(outputs)
+    return sender
+
+
+def _passes(module: Module) -> Sequence[Pass]:
+    """The module's estimate, direct light, and the module's own ambient light; then the sum."""
+    ambient = [step for step in module.lighting() if isinstance(step, Pass) and "ambient" in step.outputs]
+    return [*module.estimate().passes, DIRECT, *ambient, _SENDER]
