@@ -41,13 +41,14 @@ SURFACES = _table(
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
 
-# made from an estimate by the lighting and the composition
+# made from an estimate by the lighting and the composition. Radiance has single precision: half floats end at 65504, and a
+# surface near a lamp may be brighter
 LIT = _table(
-    Buffer("direct", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The light of the lamps that the surface reflects."),
-    Buffer("ambient", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The environment's light that the surface reflects."),
-    Buffer("indirect", 3, "RGBA16F", _RADIANCE, 0, "radiance", "One bounce of light that the surface reflects."),
-    Buffer("sender", 3, "RGBA16F", _RADIANCE, 0, "radiance", "The light that leaves each surface before any bounce."),
-    Buffer("radiance", 3, "RGBA16F", _RADIANCE, None, "radiance", "The sum of all light, over the environment."),
+    Buffer("direct", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The light of the lamps that the surface reflects."),
+    Buffer("ambient", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The environment's light that the surface reflects."),
+    Buffer("indirect", 3, "RGBA32F", _RADIANCE, 0, "radiance", "One bounce of light that the surface reflects."),
+    Buffer("sender", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The light that leaves each surface before any bounce."),
+    Buffer("radiance", 3, "RGBA32F", _RADIANCE, None, "radiance", "The sum of all light, over the environment."),
     Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", None, "displayed", "The radiance, tone mapped, for a screen."),
 )
 
@@ -59,7 +60,7 @@ CONTRACT = _table(
         "The environment's irradiance with occlusion; the lighting reflects it as `ambient`.",
     ),
     Buffer(
-        "bounce", 3, "RGBA16F", "irradiance", 0, "numbers",
+        "bounce", 3, "RGBA32F", "irradiance", 0, "numbers",
         "The irradiance of one bounce; the lighting reflects it as `indirect`.",
     ),
     Buffer(

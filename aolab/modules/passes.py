@@ -7,6 +7,7 @@ from typing import Literal
 from ..gl.source import Constant
 from ..scene.scene import Scene
 from ..scene.view import View, Viewpoint
+from .buffers import LIT
 
 
 @dataclass(frozen=True)
@@ -53,10 +54,10 @@ class GeometryPass(Pass):
 
 
 # The lighting of methods without their own: lights through shadow maps, the environment by its spherical harmonics
-DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": "RGBA16F"}, {"shared_light": False})
+DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": LIT["direct"].format}, {"shared_light": False})
 # the same, times the buffer `light_share`, the share of the lights' irradiance that arrives
 SHARED_DIRECT = replace(DIRECT, constants={"shared_light": True})
-AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": "RGBA16F"})
+AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": LIT["ambient"].format})
 
 
 def reflect(irradiance: str, radiance: str) -> Pass:
@@ -64,7 +65,7 @@ def reflect(irradiance: str, radiance: str) -> Pass:
     return Pass(
         radiance,
         "pipeline/reflect.frag",
-        {radiance: "RGBA16F"},
+        {radiance: LIT["radiance"].format},
         reads={"source": irradiance},
         writes={"reflected": radiance},
     )

@@ -8,7 +8,7 @@ import numpy as np
 from ..maths.harmonics import clamped_cosine, rotation
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
-from .buffers import Buffer
+from .buffers import LIT, Buffer
 from .marched import Marched
 from .parameters import parameter
 from .passes import AMBIENT, DIRECT, Pass
@@ -118,7 +118,7 @@ class S3HO(Marched):
         passes = [lobes if self.lights == "lobes" else DIRECT]
         passes.append(Pass("ambient", "s3ho.ambient.frag", AMBIENT.outputs))
         if self.indirect:
-            passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": "RGBA16F"}))
+            passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": LIT["indirect"].format}))
         return passes
 
     def resolved(self, scene: Scene) -> "S3HO":

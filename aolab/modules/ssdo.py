@@ -9,7 +9,7 @@ from ..scene.irradiance import OpenIrradiance
 from ..scene.prefiltered import Blurred, Table
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
-from .buffers import Buffer
+from .buffers import CONTRACT, Buffer
 from .marched import Marched
 from .parameters import parameter
 from .passes import AMBIENT, DIRECT, SHARED_DIRECT, Pass
@@ -76,7 +76,7 @@ class SSDO(Marched):
     def bounce(self) -> Estimate | None:
         if not self.bounces:
             return None
-        outputs, constants = {"bounce": "RGBA16F"}, {"patches": self.senders == "patches"}
+        outputs, constants = {"bounce": CONTRACT["bounce"].format}, {"patches": self.senders == "patches"}
         return Estimate([Pass("ssdo bounce", "ssdo.bounce.frag", outputs, constants)], outputs)
 
     def resolved(self, scene: Scene) -> "SSDO":

@@ -29,7 +29,7 @@ class Frame:
     `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
     the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` says how it
     was made: renderer, module, parameters, camera, size, seed, ...; `notes` what was repaired or left out. A frame
-    keeps its textures until it is dropped, so frames may be held and compared; each costs 50 to 200 bytes a pixel.
+    keeps its textures until it is dropped, so frames may be held and compared; each costs 80 to 300 bytes a pixel.
     """
 
     textures: Mapping[str, moderngl.Texture | np.ndarray]

@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 
 from ..gl.bindings import Bindings
+from ..modules.buffers import LIT
 from ..modules.estimate import Estimate
 from ..modules.passes import Pass, reflect
 from ..scene.environment import Environment
@@ -21,7 +22,7 @@ from .state import SurfaceState
 
 ToneMap = Literal["filmic", "linear"]
 
-_COMPOSE = Pass("compose", "pipeline/compose.frag", {"radiance": "RGBA16F", "image": "RGBA8"})
+_COMPOSE = Pass("compose", "pipeline/compose.frag", {name: LIT[name].format for name in ("radiance", "image")})
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
 

@@ -7,13 +7,14 @@ import moderngl
 
 from ..gl.bindings import Bindings
 from ..modules import Module
+from ..modules.buffers import LIT
 from ..modules.occluders.base import Hidden
 from ..modules.passes import DIRECT, Pass
 from .lighting import Lights
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
 
-_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": "RGBA16F"})
+_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": LIT["sender"].format})
 
 
 def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers, SurfaceState]:

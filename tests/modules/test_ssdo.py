@@ -11,6 +11,8 @@ import aolab
 from aolab import Camera, DirectionalLight, Environment, Material, PointLight
 from aolab.maths.sampling import cosine_hemisphere
 from aolab.measures.flicker import flicker
+from aolab.modules.estimate import Estimate
+from aolab.modules.passes import Pass
 from aolab.scene.environment import averaged
 
 DARK = Environment.constant(0.0)
@@ -358,7 +360,7 @@ def test_the_clamp_is_a_patchs_own_radius_unless_given(lab):
 
 @pytest.mark.slow
 def test_converged_rays_are_the_references_bounce(lab):
-    """Lit by lights alone: the reference's senders know no environment, and SSDO's reflect that too."""
+    """Lit by lamps alone, with peeled layers."""
     scene = aolab.load("boxes", ambient=0.0)
     settings = {"radius": 1.0, "bounces": 1, "senders": "rays", "directions": 16, "steps": 16, "filter": "none"}
     frame = lab.render(scene, "ssdo", size=(128, 72), accumulate=4, occluders="layers", **settings)
@@ -370,6 +372,46 @@ def test_converged_rays_are_the_references_bounce(lab):
     assert rms(error) < 0.35 * scale
     assert abs(error.mean()) < 0.15 * truth["indirect"][lit].mean()
     assert np.corrcoef(frame["indirect"][lit].ravel(), truth["indirect"][lit].ravel())[0, 1] > 0.95
+
+
+def test_hidden_senders_make_the_bounce_of_the_sky_better(lab):
+    """Under a sky, the bounce with peeled layers has less error than with one layer: hidden senders have occlusion."""
+    scene = replace(aolab.load("boxes"), lights=(), environment=Environment.sky())
+    settings = {"radius": 1.0, "bounces": 1, "directions": 16, "steps": 16, "filter": "none", "size": (160, 90)}
+    like = aolab.SSDO(radius=1.0)
+    truth = aolab.reference(scene, size=(160, 90), like=like, rays=128, buffers="indirect", cache=False)["indirect"]
+    errors = {}
+    for kind in ("depth", "layers"):
+        frame = lab.render(scene, "ssdo", occluders=kind, accumulate=2, **settings)
+        errors[kind] = rms(frame["indirect"][frame.mask] - truth[frame.mask])
+    assert errors["layers"] < 0.8 * errors["depth"]
+
+
+class HiddenLight(aolab.SSDO):
+    """Its bounce is the light that leaves the second layer."""
+
+    def bounce(self) -> Estimate:
+        text = """
+            uniform sampler2D sender1;
+            out vec4 bounce;
+            void main() { bounce = texelFetch(sender1, ivec2(gl_FragCoord.xy), 0); }
+        """
+        return Estimate([Pass("hidden light", text, {"bounce": "RGBA32F"})], {"bounce": "RGBA32F"})
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_the_sky_reaches_hidden_senders_past_what_blocks_it(lab):
+    """The back of a wall, white under a white sky: it is in the open, or a gap of 0.1 away from another wall."""
+    camera = Camera((0, 0.5, 3), (0, 0.5, 0), fov=20)
+    front, behind = box((-2, 0, -0.2), (2, 1, 0)), box((-2, 0, -0.5), (2, 1, -0.3))
+    found = {}
+    for name, walls in (("alone", [front]), ("gap", [front, behind])):
+        scene = of(*walls, camera=camera)
+        frame = lab.render(scene, HiddenLight(radius=1.0, bounces=1, occluders="layers", filter="none", steps=16))
+        middle = frame["bounce"][20:28, 28:36, 0]  # the back of the front wall
+        found[name] = middle.mean()
+    assert found["alone"] > 0.95
+    assert found["gap"] < 0.4
 
 
 def test_a_bounce_at_half_resolution(lab, boxes):

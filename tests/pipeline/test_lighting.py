@@ -323,3 +323,17 @@ def test_meshes_of_one_face_each_way_are_lit_from_the_viewers_side(lab):
     )
     assert lit["direct"][24, 32, 0] > 0.1
     assert not unlit["direct"].any()
+
+
+@pytest.mark.parametrize("module", ["ssdo", "s3ho"])
+def test_light_beyond_half_precision_is_not_clipped(lab, wall, module):
+    """A sun of 10⁷ gives 10⁷ times the light of a sun of 1, in every buffer of radiance."""
+    bounce = {"ssdo": {"bounces": 1}, "s3ho": {"indirect": True, "lights": "sharp"}}[module]
+    suns = [DirectionalLight((-1, -1, 0), (power,) * 3, shadow=False) for power in (1.0, 1e7)]
+    dim, bright = (
+        lab.render(wall.replace(lights=(sun,), environment=DARK), module, radius=1.0, **bounce) for sun in suns
+    )
+    for name in ("direct", "indirect", "radiance"):
+        largest = dim[name].max()
+        assert bright[name].max() > 65504, name
+        np.testing.assert_allclose(bright[name] / 1e7, dim[name], rtol=0.01, atol=1e-3 * largest, err_msg=name)
