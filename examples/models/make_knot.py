@@ -4,6 +4,8 @@ from pathlib import Path
 
 import numpy as np
 import trimesh
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
 ALONG, AROUND, THICKNESS = 160, 14, 0.22
 
@@ -29,8 +31,8 @@ def knot() -> trimesh.Trimesh:
 
 
 def coloured(mesh: trimesh.Trimesh, name: str, color: tuple[float, float, float]) -> trimesh.Trimesh:
-    material = trimesh.visual.material.PBRMaterial(name=name, baseColorFactor=[*color, 1.0], roughnessFactor=1.0)
-    mesh.visual = trimesh.visual.TextureVisuals(material=material)
+    material = PBRMaterial(name=name, baseColorFactor=[*color, 1.0], roughnessFactor=1.0)
+    mesh.visual = TextureVisuals(material=material)
     return mesh
 
 
@@ -39,4 +41,4 @@ if __name__ == "__main__":
     scene = trimesh.Scene()
     scene.add_geometry(coloured(knot(), "clay", (0.75, 0.32, 0.2)), geom_name="knot")
     scene.add_geometry(coloured(plate, "plaster", (0.8, 0.8, 0.78)), geom_name="plate")
-    Path(__file__).with_name("knot.glb").write_bytes(scene.export(file_type="glb"))
+    scene.export(Path(__file__).with_name("knot.glb"))
