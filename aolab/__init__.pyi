@@ -1,3 +1,4 @@
+from . import modules as modules
 from .errors import ContextError as ContextError
 from .errors import Error as Error
 from .errors import FileError as FileError

@@ -121,7 +121,8 @@ class Explorer(anywidget.AnyWidget):
             self._share = max(self._share, LEAST_SHARE)
         self.frame = frame
         self.code = self._code()
-        buffer = wish.get("buffer") if wish.get("buffer") in frame.buffers else first_buffer(frame.buffers)
+        wanted = str(wish.get("buffer", ""))
+        buffer = wanted if wanted in frame.buffers else first_buffer(frame.buffers)
         sides = "×".join(map(str, size))
         reply |= {
             "code": self.code,

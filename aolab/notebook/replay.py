@@ -49,7 +49,7 @@ class Samples:
     @property
     def open(self) -> np.ndarray:
         """(N,) bool: the directions on which nothing blocks."""
-        return ~self.blocked.any(axis=1)
+        return np.logical_not(self.blocked.any(axis=1))
 
     @property
     def first(self) -> np.ndarray:
@@ -152,7 +152,7 @@ def _uv(points: np.ndarray, pixel_from_ray: np.ndarray, texel_size: np.ndarray) 
     return (pixel * texel_size).astype(F)
 
 
-def _fetch(texture: np.ndarray, uv: np.ndarray, outside: object) -> np.ndarray:
+def _fetch(texture: np.ndarray, uv: np.ndarray, outside: float) -> np.ndarray:
     """The nearest texels of `texture` (h, w) or (h, w, 4) at uv (..., 2); `outside` off the picture."""
     height, width = texture.shape[:2]
     u, v = np.floor(uv[..., 0] * F(width)), np.floor(uv[..., 1] * F(height))

@@ -21,6 +21,11 @@ def test_modules_and_scenes_are_listed():
     assert "ssao" in repr(aolab.modules())  # pyright: ignore[reportCallIssue]
 
 
+def test_modules_are_listed_by_the_first_call_of_a_process(python):
+    done = python("import aolab; print(*aolab.modules())")
+    assert done.stdout.split() == list(MODULES), done.stderr
+
+
 @pytest.mark.parametrize("module", MODULES)
 def test_a_call_offers_the_parameters_of_its_module(module):
     offered = candidates(f'frame = lab.render(scene, "{module}", size=(64, 48), ')
