@@ -14,8 +14,6 @@
 
 const bool uniform_weights;
 
-uniform mat4 world_from_view;
-
 out vec4 blocked_direction;
 
 void main() {

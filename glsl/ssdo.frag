@@ -12,7 +12,6 @@
 #include "lib/octahedral.glsl"
 
 uniform sampler2D prefiltered_environment;
-uniform mat4 world_from_view;
 
 layout(location = 0) out vec4 open_light;
 layout(location = 1) out vec4 all_light;

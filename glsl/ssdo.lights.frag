@@ -11,8 +11,6 @@
 const int light_steps;   // samples on the way to each light
 
 uniform vec2 light_samples[16];   // of each set of samples: the way's length, in radii, and its first offset, in steps
-uniform mat4 view_from_world;
-uniform mat4 world_from_view;
 
 out vec4 light_share;
 

@@ -9,7 +9,7 @@ import moderngl
 
 from ..errors import ShaderError, suggestion
 from . import context, raw
-from .source import Constant, Source, assemble, included
+from .source import Constant, Declared, Source, assemble, declared
 
 FULLSCREEN = "pipeline/fullscreen.vert"
 MAX_SAMPLERS = 16  # OpenGL 3.3 guarantees this many to a fragment shader; some drivers grant more, macOS does not
@@ -104,7 +104,7 @@ class Programs:
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
-        self._included: dict[str, frozenset[str]] = {}
+        self._in_text: dict[str, Declared] = {}
 
     def get(
         self,
@@ -127,11 +127,11 @@ class Programs:
         key = self._key(request)
         return self._programs[key] if key in self._programs else self._keep(_compile(request))
 
-    def includes(self, shader: str, name: str) -> bool:
-        """Whether the shader includes the file `name`, directly or through another file."""
-        if shader not in self._included:
-            self._included[shader] = included(shader)
-        return name in self._included[shader]
+    def declared(self, shader: str) -> Declared:
+        """The includes and samplers of a shader, before anything is compiled."""
+        if shader not in self._in_text:
+            self._in_text[shader] = declared(shader)
+        return self._in_text[shader]
 
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
         """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay.
@@ -150,7 +150,7 @@ class Programs:
         for program in fresh:
             self._keep(program)
         self.generation += bool(fresh)
-        self._included.clear()
+        self._in_text.clear()
         return sorted({program.name for program in fresh})
 
     def _key(self, request: Request) -> tuple[object, ...]:

@@ -15,6 +15,7 @@ _CONSTANT = re.compile(r"^(\s*const\s+(int|float|bool|uint)\s+(\w+)\s*);(.*)$")
 _CONDITION = re.compile(r"^\s*#\s*(?:if|elif)\b(.*)$")
 _DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)")
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_SAMPLER = re.compile(r"^\s*uniform\s+[iu]?sampler\w+\s+(\w+)", re.MULTILINE)
 # an `out` of the shader, not of a function: it ends in a semicolon and has no parenthesis beyond its layout
 _OUT = re.compile(r"^\s*(?:layout\s*\([^)]*\)\s*)?out\s+(?:(?:low|medium|high)p\s+)?\w+\s+([^;(){}]+);", re.MULTILINE)
 
@@ -80,9 +81,18 @@ def is_text(shader: str) -> bool:
     return "\n" in shader
 
 
-def included(shader: str) -> frozenset[str]:
-    """The names of all includes of a shader, at any depth. A name without a file, as of an alias, is not followed."""
-    found: set[str] = set()
+@dataclass(frozen=True)
+class Declared:
+    """The names in a shader's text, at any depth of includes, whether the compiler needs them or not."""
+
+    includes: frozenset[str]
+    samplers: frozenset[str]
+
+
+def declared(shader: str) -> Declared:
+    """The includes and samplers of a shader. An include without a file, as of an alias, is not followed."""
+    includes: set[str] = set()
+    samplers: set[str] = set()
     waiting = [shader]
     while waiting:
         one = waiting.pop()
@@ -91,9 +101,10 @@ def included(shader: str) -> frozenset[str]:
             continue
         text = one if path is None else path.read_text(encoding="utf-8")
         names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
-        waiting += names - found
-        found |= names
-    return frozenset(found)
+        samplers.update(_SAMPLER.findall(_COMMENT.sub("", text)))
+        waiting += names - includes
+        includes |= names
+    return Declared(frozenset(includes), frozenset(samplers))
 
 
 class _Builder:

@@ -41,6 +41,13 @@ SURFACES = _table(
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
 
+# drawn with them if a pass of the module samples them
+ON_DEMAND = _table(
+    Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
+    Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),
+    Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
+)
+
 # made from an estimate by the lighting and the composition. Radiance has single precision: half floats end at 65504, and a
 # surface near a lamp may be brighter
 LIT = _table(
@@ -83,4 +90,4 @@ SHARED = _table(
     ),
 )
 
-BUFFERS: dict[str, Buffer] = SURFACES | LIT | CONTRACT | SHARED
+BUFFERS: dict[str, Buffer] = SURFACES | ON_DEMAND | LIT | CONTRACT | SHARED

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import ParameterError
 from ..gl.texture import FORMATS
-from .buffers import BUFFERS, CONTRACT, LIT, SURFACES
+from .buffers import BUFFERS, CONTRACT, LIT, ON_DEMAND, SURFACES
 from .filters import FILTERS
 from .occluders import OCCLUDERS
 from .parameters import Choice
@@ -22,6 +22,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel",),
     "the mesh": ("base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided"),
+    "the last frame": ("has_last", "last_from_view", "last_pixel_from_ray"),
 }  # fmt: skip
 
 
@@ -51,7 +52,7 @@ def check_parameters(module: str, values: Iterable[str], attributes: Iterable[st
 
 def check_outputs(module: str, outputs: Mapping[str, str]) -> None:
     """Raise `ParameterError` for an output whose name the pipeline fills, or whose format breaks the name's meaning."""
-    owners = dict.fromkeys(SURFACES, "the surfaces") | dict.fromkeys(LIT, "the lighting")
+    owners = dict.fromkeys(SURFACES | ON_DEMAND, "the surfaces") | dict.fromkeys(LIT, "the lighting")
     for name, format in outputs.items():
         plain = name.removesuffix("_raw")
         if plain in owners:

@@ -27,6 +27,7 @@ def render(
     accumulate: int = 1,
     exposure: float = 1.0,
     tone_map: ToneMap = "filmic",
+    last: Frame | None = None,
     **parameters: object,
 ) -> Frame:
     """Render `scene` (anything that `aolab.load` takes) with a module; see `Lab.render`, which this calls.
@@ -42,5 +43,6 @@ def render(
         accumulate=accumulate,
         exposure=exposure,
         tone_map=tone_map,
+        last=last,
         **parameters,
     )

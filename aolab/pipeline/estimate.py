@@ -51,7 +51,7 @@ def steps(frame: FrameContext, passes: Iterable[Pass], given: Sequence[Bindings]
         if isinstance(step, GeometryPass):
             made = made | frame.rasterizer.draw(step, view, before)
         else:
-            made = made | frame.runner.run(step, [seen, *before], view.size)
+            made = made | frame.runner.run(step, [seen, frame.last, *before], view.size)
     return made
 
 

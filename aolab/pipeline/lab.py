@@ -15,8 +15,7 @@ from ..gl.program import Programs
 from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
 from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
-from ..modules.buffers import BUFFERS
-from ..modules.occluders import OccluderKind
+from ..modules.buffers import BUFFERS, ON_DEMAND
 from ..modules.occluders.base import Occluders
 from ..scene.camera import Camera
 from ..scene.environment import Environment
@@ -29,6 +28,7 @@ from .environments import EnvironmentMaps
 from .estimate import estimate
 from .frame import Frame, lend
 from .geometry import Geometry
+from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
@@ -81,13 +81,15 @@ class Lab:
         accumulate: int = 1,
         exposure: float = 1.0,
         tone_map: ToneMap = "filmic",
+        last: Frame | None = None,
         **parameters: object,
     ) -> Frame:
         """Render one frame.
 
         `scene` is anything that `aolab.load` takes; `module` a name, class or instance; `parameters` are the module's.
         `camera` defaults to the scene's. `seed` chooses the sample set; `accumulate` averages that many frames with
-        different sets. Raises `ParameterError`, `SceneError`, `ShaderError`, `GpuMemoryError`, `ContextError`.
+        different sets. `last` is the frame before this one, for modules that read it.
+        Raises `ParameterError`, `SceneError`, `ShaderError`, `GpuMemoryError`, `ContextError`.
         """
         start = perf_counter()
         with warnings.catch_warnings(record=True) as caught:
@@ -100,6 +102,7 @@ class Lab:
                 _whole("seed", seed, 0),
                 _whole("accumulate", accumulate, 1),
                 _display(exposure, tone_map),
+                last,
             )
         frame.notes = [str(note.message) for note in caught]
         frame.frame_ms = (perf_counter() - start) * 1e3
@@ -135,13 +138,21 @@ class Lab:
             frame.info["tone_map"] if tone_map is None else tone_map,
         )
         self._begin()
-        lit = self._lit(frame.kept, self._rasterizer(scene), display)
+        lit = self._lit(frame.kept, self._rasterizer(scene, NO_LAST), display)
         lit.notes = list(frame.notes)
         lit.frame_ms = (perf_counter() - start) * 1e3
         return lit
 
     def _render(
-        self, scene: Scene, module: Module, camera: Camera | None, size: Size, seed: int, frames: int, display: Display
+        self,
+        scene: Scene,
+        module: Module,
+        camera: Camera | None,
+        size: Size,
+        seed: int,
+        frames: int,
+        display: Display,
+        last: Frame | None,
     ) -> Frame:
         self._begin()
         camera = camera or scene.camera
@@ -149,12 +160,13 @@ class Lab:
         module = module.resolved(scene)
         view = View(camera, size, scene.bounds)
         self._make_room({view.size, view.scaled(module.scale).size})
-        frame = FrameContext(self._rasterizer(scene), module, view, range(seed, seed + frames))
+        rasterizer = self._rasterizer(scene, last_frame(last, view))
+        frame = FrameContext(rasterizer, module, view, range(seed, seed + frames))
         return self._lit(self._state(frame), frame.rasterizer, display)
 
-    def _rasterizer(self, scene: Scene) -> Rasterizer:
+    def _rasterizer(self, scene: Scene, last: Bindings) -> Rasterizer:
         """The means to draw one frame of the scene."""
-        return Rasterizer(PassRunner(self._programs, self._pool), self._geometry, self._depth, scene)
+        return Rasterizer(PassRunner(self._programs, self._pool), self._geometry, self._depth, scene, last)
 
     def _begin(self) -> None:
         context.collect()
@@ -171,7 +183,7 @@ class Lab:
         """The surfaces, and the module's estimate if no light takes part in it."""
         module, view, runner = frame.module, frame.view, frame.runner
         with self._lending(runner):
-            large = frame.rasterizer.surfaces([view])
+            large = frame.rasterizer.surfaces([view], formats=surface_formats(frame))
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
             state = SurfaceState(frame, large, small, small_view, occluders(frame, large), {})
@@ -237,13 +249,22 @@ class Lab:
         return self._shadows[1]
 
 
+def surface_formats(frame: FrameContext) -> dict[str, str]:
+    """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
+    declared = frame.runner.programs.declared
+    sampled = {
+        step.reads.get(name, name) for step in frame.module.all_passes() for name in declared(step.shader).samplers
+    }
+    sampled |= declared(frame.occluders.glsl()).samplers
+    return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in sampled}
+
+
 def occluders(frame: FrameContext, large: Buffers) -> Occluders:
-    """What the module's choice of occluders draws; nothing where no pass of the module asks what blocks."""
-    kind = frame.module.chosen("occluders")
-    assert isinstance(kind, OccluderKind)
-    if not any(frame.runner.programs.includes(step.shader, "occluders.glsl") for step in frame.module.all_passes()):
-        return Occluders(kind.bindings())
-    return kind.draw(frame.rasterizer, frame.view, large, frame.module.sends())
+    """The occluders of the module's choice; nothing is drawn where no pass of the module includes "occluders.glsl"."""
+    declared = frame.runner.programs.declared
+    if not any("occluders.glsl" in declared(step.shader).includes for step in frame.module.all_passes()):
+        return Occluders(frame.occluders.bindings())
+    return frame.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
 
 
 def _as_scene(scene: Any) -> Scene:

@@ -34,10 +34,15 @@ class DepthTargets:
 
 
 class Rasterizer:
-    """Draws one scene for the frame of one runner. An occluder kind draws through it (`modules.occluders.Drawing`)."""
+    """Draws one scene for the frame of one runner. An occluder kind draws through it (`modules.occluders.Drawing`).
 
-    def __init__(self, runner: PassRunner, geometry: Geometry, depth: DepthTargets, scene: Scene) -> None:
-        self.runner, self.geometry, self.depth, self.scene = runner, geometry, depth, scene
+    `last` are the buffers and the view of the last frame, for all passes.
+    """
+
+    def __init__(
+        self, runner: PassRunner, geometry: Geometry, depth: DepthTargets, scene: Scene, last: Bindings
+    ) -> None:
+        self.runner, self.geometry, self.depth, self.scene, self.last = runner, geometry, depth, scene, last
 
     def surfaces(self, views: Sequence[View], name: str = "g_buffer", formats: Mapping[str, str] = G_BUFFER) -> Buffers:
         """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`."""
@@ -92,7 +97,7 @@ class Rasterizer:
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
         mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS)
-        own = [*bindings, mesh, Bindings(f"the pass '{step.name}'", constants=step.constants)]
+        own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
         views = [Bindings("the view", uniforms=viewpoint.uniforms) for viewpoint in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
         program = runner.program(step, given[0], step.vertex)

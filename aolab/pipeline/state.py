@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from ..gl.bindings import Bindings
 from ..modules import Module
 from ..modules.filters import Filter
-from ..modules.occluders.base import Occluders
+from ..modules.occluders.base import OccluderKind, Occluders
 from ..scene.scene import Scene
 from ..scene.view import View
 from .pass_runner import Buffers, PassRunner
@@ -34,10 +34,22 @@ class FrameContext:
         return self.rasterizer.scene
 
     @property
+    def last(self) -> Bindings:
+        """The last frame's buffers and view."""
+        return self.rasterizer.last
+
+    @property
     def filter(self) -> Filter:
         """The filter that the module has chosen."""
         chosen = self.module.chosen("filter")
         assert isinstance(chosen, Filter)
+        return chosen
+
+    @property
+    def occluders(self) -> OccluderKind:
+        """The occluder kind that the module has chosen."""
+        chosen = self.module.chosen("occluders")
+        assert isinstance(chosen, OccluderKind)
         return chosen
 
     @property

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 
 from ..gl.bindings import Bindings
-from ..modules.buffers import BACKGROUND_Z, SURFACES
+from ..modules.buffers import BACKGROUND_Z, ON_DEMAND, SURFACES
+from ..modules.filters.base import over_sources
 from ..modules.passes import GeometryPass, Pass
 from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
@@ -22,7 +23,7 @@ _SHRINK = Pass(
 
 
 def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = False, atlas: bool = False) -> GeometryPass:
-    """The pass that draws the scene's viewZ (background -inf), viewNormal and albedo, or those of `formats`.
+    """The pass that draws the scene's viewZ (background -inf), viewNormal and albedo, or the surface buffers `formats`.
 
     `name` is for the timings. With `peel`, the pass draws what lies behind the layer `nearerZ`. Of an `atlas`, shaders
     know the tiles' edges themselves.
@@ -31,19 +32,30 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
         name,
         "pipeline/gbuffer.frag",
         formats,
-        constants={"peel": peel},
-        writes={"surfaceViewZ": "viewZ", "surfaceNormal": "viewNormal", "surfaceAlbedo": "albedo"},
+        constants={"peel": peel, **{f"with_{name}": name in formats for name in ON_DEMAND}},
+        writes={
+            "surfaceViewZ": "viewZ",
+            "surfaceNormal": "viewNormal",
+            "surfaceAlbedo": "albedo",
+            **{f"surface{name.capitalize()}": name for name in ON_DEMAND},
+        },
         outside={} if atlas else _OUTSIDE,
         clear=_OUTSIDE,
     )
 
 
 def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buffers:
-    """The G-buffer at the size of `small`, from the one at the size of `view`."""
+    """The surface buffers at the size of `small`, from those at the size of `view`."""
     rays = {"small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
     bindings = [
         Bindings("the surfaces", buffers),
         Bindings("the view", uniforms=view.uniforms),
         Bindings("the small view", uniforms=rays),
     ]
-    return runner.run(_SHRINK, bindings, small.size)
+    result = runner.run(_SHRINK, bindings, small.size)
+    others = {name: ON_DEMAND[name].format for name in buffers if name in ON_DEMAND}
+    if others:
+        step = over_sources("shrink", "pipeline/shrink_sources.frag", others)
+        sources = {f"source{number}": buffers[name] for number, name in enumerate(others)}
+        result |= runner.run(step, [*bindings[1:], Bindings("the sources", sources)], small.size)
+    return result

@@ -9,3 +9,5 @@ uniform sampler2D viewNormal;
 uniform sampler2D sender;      // RGB radiance that leaves each surface
 uniform vec2 texel_size;       // 1 / resolution
 uniform vec4 pixel_from_ray;
+uniform mat4 view_from_world;
+uniform mat4 world_from_view;

@@ -2,12 +2,24 @@
 // Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
 //          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w 0)
 //          surfaceAlbedo  linear diffuse albedo; a is 1 where a surface is, and 0 in the background (RGBA16F)
+// On demand: surfaceUv       texture coordinates (RG32F)
+//            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
+//            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 
+#include "lib/space.glsl"
+
+const bool with_uv;
+const bool with_tangent;
+const bool with_motion;
+const bool has_last;   // there is a last frame to have moved from
 const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
 
 #include "lib/base_color.glsl"
 
 uniform sampler2D nearerZ;
+uniform vec4 pixel_from_ray;
+uniform mat4 last_from_view;        // the last camera's view space from this one's
+uniform vec4 last_pixel_from_ray;
 
 in vec3 viewPos;
 in vec3 viewNormal;
@@ -18,6 +30,19 @@ flat in float winding;
 out float surfaceViewZ;
 out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
+out vec2 surfaceUv;
+out vec4 surfaceTangent;
+out vec2 surfaceMotion;
+
+// The derivative of the position by u, of unit length and in the surface.
+vec3 tangentHere(vec3 normal) {
+    vec3 alongX = dFdx(viewPos), alongY = dFdy(viewPos);
+    vec2 uvX = dFdx(uv), uvY = dFdy(uv);
+    vec3 byU = (alongX * uvY.y - alongY * uvX.y) * sign(uvX.x * uvY.y - uvX.y * uvY.x);
+    byU -= normal * dot(normal, byU);
+    float size = length(byU);
+    return size > 0.0 ? byU / size : vec3(0.0);
+}
 
 void main() {
     vec4 base = baseColor(uv, color);
@@ -31,4 +56,10 @@ void main() {
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+    if (with_uv) surfaceUv = uv;
+    if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
+    if (with_motion) {
+        vec3 lastPos = (last_from_view * vec4(viewPos, 1.0)).xyz;
+        surfaceMotion = has_last ? pixelAt(viewPos, pixel_from_ray) - pixelAt(lastPos, last_pixel_from_ray) : vec2(0.0);
+    }
 }

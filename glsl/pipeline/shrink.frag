@@ -3,6 +3,7 @@
 // Inputs: viewZ, viewNormal, albedo at full size. Outputs: smallViewZ (R32F), smallNormal, smallAlbedo (RGBA16F).
 
 #include "lib/space.glsl"
+#include "lib/shrink.glsl"
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
@@ -16,9 +17,7 @@ out vec4 smallAlbedo;
 
 void main() {
     vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, small_ray_from_pixel);
-    // at half the size two pixels are nearest: rounding must not choose (`Frame.world_normal` chooses the same one)
-    ivec2 nearest = ivec2((ray.xy - ray_from_pixel.zw) / ray_from_pixel.xy + 0.01);
-    nearest = clamp(nearest, ivec2(0), textureSize(viewZ, 0) - 1);
+    ivec2 nearest = nearestLarge(gl_FragCoord.xy, textureSize(viewZ, 0), ray_from_pixel, small_ray_from_pixel);
     smallViewZ = texelFetch(viewZ, nearest, 0).r;
     smallNormal = texelFetch(viewNormal, nearest, 0);
     smallAlbedo = texelFetch(albedo, nearest, 0);

@@ -3,6 +3,9 @@
 from .base import OccluderKind
 from .depth import Depth
 from .layers import Layers
+from .product import Product
 from .views import Views
 
 OCCLUDERS: dict[str, type[OccluderKind]] = {kind.name: kind for kind in (Depth, Layers, Views)}
+
+__all__ = ["OCCLUDERS", "Depth", "Layers", "OccluderKind", "Product", "Views"]
