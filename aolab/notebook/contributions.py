@@ -29,8 +29,9 @@ def contributions(
     if isinstance(module, SSDO):
         table = _table(module.tables()["prefiltered_environment"], environment)
         column, row = np.minimum(octahedral_uv(world) * len(table), len(table) - 1).astype(int).T
-        light = np.pi * table[row, column] * open_[:, None]
-        return {"irradiance": np.column_stack([light, open_]) / count}
+        light = np.column_stack([table[row, column], np.ones(count)]) / count
+        parts = {"open_light": light * open_[:, None]}
+        return parts | ({"all_light": light} if module.estimator == "blocked" else {})
     if isinstance(module, SSBN):
         weights = 0.5 / (samples.kernel[:, 2] / np.linalg.norm(samples.kernel[:, :3], axis=1))
         uniform = module.weighting == "uniform"

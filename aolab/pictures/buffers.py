@@ -10,7 +10,9 @@ from ..errors import ParameterError
 from .tone import shown, srgb
 
 SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share")  # in [0, 1], shown in grey
-RADIANCE = ("direct", "ambient", "indirect", "radiance", "irradiance", "bounce", "sender")  # linear RGB
+RADIANCE = (  # linear RGB
+    "direct", "ambient", "indirect", "radiance", "irradiance", "bounce", "sender", "open_light", "all_light",
+)  # fmt: skip
 DIRECTIONS = ("viewNormal", "bent_normal")  # components in [-1, 1]
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
 

@@ -133,7 +133,7 @@ def test_a_module_is_a_table_with_its_own_parameters_first():
     text = aolab.SSDO(bounces=1)._repr_html_()
     for name in aolab.SSDO.model_fields:
         assert f">{name}<" in text
-    assert own_first(aolab.SSDO)[0] == "bounces"
+    assert set(own_first(aolab.SSDO)[:2]) == {"estimator", "bounces"}
     assert own_first(aolab.SSDO).index("directions") < own_first(aolab.SSDO).index("occluders")
     assert sorted(own_first(aolab.SSDO)) == sorted(aolab.SSDO.stated())
 

@@ -17,6 +17,7 @@ CASES = [
     ("ssao", {"occluders": "views"}),
     ("ssao", {"occluders": "views", "view_layers": 2}),
     ("ssdo", {"scale": 0.5}),
+    ("ssdo", {"estimator": "plain"}),
     ("ssdo", {"occluders": "layers", "bounces": 1}),
     ("ssbn", {}),
     ("ssbn", {"weighting": "uniform"}),
@@ -57,7 +58,7 @@ def test_contributions_add_up_to_the_value(lab, boxes):
     frame = lab.render(boxes, "ssdo", radius=1.0)
     for pixel in pixels(frame, 5):
         seen = aolab.microscope(frame, pixel)
-        assert seen.contributions[0]["irradiance"].sum(axis=0) == pytest.approx(seen.values["irradiance"])
+        assert seen.contributions[0]["open_light"].sum(axis=0) == pytest.approx(seen.values["open_light"])
 
 
 def test_a_wall_blocks_and_is_named(lab, wall):
@@ -76,8 +77,8 @@ def test_light_from_open_directions_contributes_in_its_colour(lab):
     red = Environment.constant((1.0, 0.0, 0.0))
     scene = of(quad((-5, 0, 5), (10, 0, 0), (0, 0, -10)), camera=Camera((0, 3, 4), (0, 0, 0)), sky=red)
     seen = aolab.microscope(lab.render(scene, "ssdo"), (32, 30))
-    parts = seen.contributions[0]["irradiance"]
-    assert parts[:, 0] == pytest.approx(np.full(len(parts), np.pi / len(parts)), rel=1e-3)
+    parts = seen.contributions[0]["open_light"]
+    assert parts[:, 0] == pytest.approx(np.full(len(parts), 1 / len(parts)), rel=1e-3)
     assert (parts[:, 1:3] == 0).all()
 
 
