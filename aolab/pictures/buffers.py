@@ -13,7 +13,7 @@ SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light
 RADIANCE = (  # linear RGB
     "direct", "ambient", "indirect", "radiance", "irradiance", "bounce", "sender", "open_light", "all_light",
 )  # fmt: skip
-DIRECTIONS = ("viewNormal", "bent_normal")  # components in [-1, 1]
+DIRECTIONS = ("viewNormal", "bent_normal", "tangent")  # components in [-1, 1]
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
 
 BACKGROUND = np.array((198, 214, 230), np.uint8)  # pale blue: in no colour map used here
