@@ -153,6 +153,12 @@ class Scene:
         """Half the diagonal of the bounds, in scene units."""
         return float(np.linalg.norm(self.bounds[1] - self.bounds[0])) / 2
 
+    @cached_property
+    def sphere_radius(self) -> float:
+        """The radius of the bounding sphere around the centre of the bounds, in scene units; at most `radius`."""
+        vertices = (instance.placed(instance.mesh.vertices) for instance in self.instances)
+        return max(float(np.linalg.norm(world - self.centre, axis=1).max()) for world in vertices)
+
     @property
     def triangles(self) -> int:
         """How many triangles are drawn, instances counted."""

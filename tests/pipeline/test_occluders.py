@@ -251,22 +251,25 @@ def test_hidden_senders_bounce(lab):
 # --- views
 
 
-def test_the_views_stand_as_in_the_paper():
+@pytest.mark.parametrize("shape", ["boxes", "ball"])
+def test_the_views_stand_as_in_the_paper(shape):
     """Displaced by a unit vector times the bounding sphere's radius, towards the same centre of interest."""
-    scene = small_scenes.boxes(Camera((0.5, 2.5, 5), (0, 0.5, 0)))
-    cameras = further_cameras(scene.camera, scene)
+    view = Camera((0.5, 2.5, 5), (0, 0.5, 0))
+    ball = small_scenes.of(small_scenes.sphere(2.0, (1, 0, 0)), camera=view)
+    scene, radius = {"boxes": (small_scenes.boxes(view), np.sqrt(20**2 + 1.8**2 + 20**2) / 2), "ball": (ball, 2)}[shape]
+    cameras = further_cameras(view, scene)
     assert len(cameras) == 4
-    eye = np.array(scene.camera.eye)
-    forward = -scene.camera.view_from_world[2, :3]
+    eye = np.array(view.eye)
+    forward = -view.view_from_world[2, :3]
     for camera in cameras:
-        assert np.linalg.norm(np.array(camera.eye) - eye) == pytest.approx(scene.radius)
+        assert np.linalg.norm(np.array(camera.eye) - eye) == pytest.approx(radius, rel=1e-3)
         towards = np.array(camera.target) - eye
         assert towards @ forward == pytest.approx(np.linalg.norm(towards))  # on the camera's own axis
         assert camera.target == pytest.approx(cameras[0].target)
-        assert camera.fov == scene.camera.fov
-    axes = scene.camera.view_from_world[:3, :3]
-    right, left, above, _ = (axes @ (np.array(camera.eye) - eye) / scene.radius for camera in cameras)
-    np.testing.assert_allclose([right, left, above], [(1, 0, 0), (-1, 0, 0), (0, 1, 0)], atol=1e-9)
+        assert camera.fov == view.fov
+    axes = view.view_from_world[:3, :3]
+    right, left, above, _ = (axes @ (np.array(camera.eye) - eye) / radius for camera in cameras)
+    np.testing.assert_allclose([right, left, above], [(1, 0, 0), (-1, 0, 0), (0, 1, 0)], atol=1e-3)
 
 
 @pytest.mark.parametrize(
@@ -291,8 +294,8 @@ def test_no_camera_is_without_views(lab, boxes, camera):
 def test_the_view_from_above_when_it_stands_over_the_centre_of_interest():
     """There its up would be along its own look."""
     scene = small_scenes.boxes()
-    eye = np.array((0, 0.5 - scene.radius, 0))
-    camera = Camera(tuple(eye), (0, 0.5 - scene.radius / 2, 0), up=(0, 0, -1))
+    eye = np.array((0, 0.5 - scene.sphere_radius, 0))
+    camera = Camera(tuple(eye), (0, 0.5 - scene.sphere_radius / 2, 0), up=(0, 0, -1))
     for one in further_cameras(camera, scene):
         assert np.isfinite(one.view_from_world).all()
 

@@ -73,7 +73,7 @@ def _uniforms(tiles: list[View], view: View) -> dict[str, object]:
 
 
 def further_cameras(camera: Camera, scene: Scene) -> list[Camera]:
-    """The cameras of SSDO, section 4: displaced by a unit vector times the scene's bounding-sphere radius.
+    """The cameras of SSDO, section 4: displaced by a unit vector times the radius of the scene's bounding sphere.
 
     They look at the same centre of interest: the point of the view axis beside the scene's centre, or the target if
     that is farther.
@@ -84,7 +84,7 @@ def further_cameras(camera: Camera, scene: Scene) -> list[Camera]:
     interest = eye + distance * forward
     result = []
     for displacement in DISPLACEMENTS:
-        there = eye + scene.radius * (np.asarray(displacement) @ axes)
+        there = eye + scene.sphere_radius * (np.asarray(displacement) @ axes)
         looking = interest - there
         # straight down the camera's up there is no up left: then its forward serves
         up = axes[1] if np.linalg.norm(np.cross(looking, axes[1])) > 1e-3 * np.linalg.norm(looking) else forward
