@@ -34,7 +34,7 @@ PAPERS = CHECKOUT / "tests" / "papers"
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark figures and slow tests by their place and fixtures; the wheel and files with many slow tests run first."""
     for item in items:
-        if PAPERS in item.path.parents and item.path.stem != "test_reproduce":
+        if PAPERS in item.path.parents and item.path.stem not in {"test_reproduce", "test_claims"}:
             item.add_marker("figures")
         if {"python", "mitsuba"} & {*getattr(item, "fixturenames", ())}:  # fixtures that start a process
             item.add_marker("slow")

@@ -64,7 +64,7 @@ SMALL = {
     ("s3ho", "fig1"): {"size": (240, 135), "rays": 64},
     ("s3ho", "fig6"): {"size": (96, 54), "rays": 64},
     ("s3ho", "fig7"): {"rays": 512, "seeds": 3},
-    ("s3ho", "fig8"): {"size": (80, 45), "rays": 128, "seeds": 3},
+    ("s3ho", "fig8"): {"size": (96, 54), "rays": 128, "seeds": 3, "frames": 8},
     ("s3ho", "fig9"): {"size": (80, 45), "seeds": 3},
     ("s3ho", "table1"): {"size": (96, 54), "repeats": 1},
 }
