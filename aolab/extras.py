@@ -26,10 +26,11 @@ class Extra:
 EXTRAS = {
     "embree": Extra("embreex", "embreex", "ray tracing"),
     "flip": Extra("flip_evaluator", "flip-evaluator", "the error measure FLIP"),
-    "pictures": Extra("matplotlib", "matplotlib", "pictures of errors"),
+    "pictures": Extra("matplotlib", "matplotlib", "a picture with a colour map"),
     "tune": Extra("optuna", "optuna", "fitting parameters"),
     "mitsuba": Extra("mitsuba", "mitsuba", "a path tracer as second opinion"),
-    "notebook": Extra("anywidget", "anywidget", "picking pixels in a notebook"),
+    "draco": Extra("DracoPy", "DracoPy", "glTF files that Draco compressed"),
+    "notebook": Extra("anywidget", "anywidget", "a widget in a notebook"),
     "jupyter": Extra("IPython", "jupyterlab", "frames that are shown in notebooks"),
     "pyrender": Extra("pyrender", "scikit-robot-pyrender", "pyrender scenes as input"),
 }
