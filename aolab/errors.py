@@ -43,8 +43,20 @@ def shorten(name: str, limit: int = 80) -> str:
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names."""
+    """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names.
+
+    Case does not count, and the same letters in another order are nearest: `ssoa` is `ssao` rather than `ssdo`.
+    """
     names = sorted(known)
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.6)
     listed = ", ".join(names) if names else "none"
-    return f"; did you mean '{close[0]}'? (known: {listed})" if close else f"; known: {listed}"
+    written = name.lower()
+    matcher = difflib.SequenceMatcher(b=written)
+
+    def nearness(candidate: str) -> float:
+        matcher.set_seq1(candidate.lower())
+        return matcher.ratio() + (sorted(candidate.lower()) == sorted(written))
+
+    nearest = max(names, key=nearness, default="")
+    if names and nearness(nearest) >= 0.6:
+        return f"; did you mean '{nearest}'? (known: {listed})"
+    return f"; known: {listed}"

@@ -1,10 +1,12 @@
 """Sphinx configuration. Some of the MyST pages are notebooks: `make docs` runs them and caches their outputs."""
 
+import os
 import sys
 from hashlib import sha256
 from pathlib import Path
 from shutil import rmtree
 
+os.environ.setdefault("TQDM_DISABLE", "1")  # no bars of progress in the pages
 sys.path.insert(0, str(Path(__file__).parent / "_ext"))
 
 from aolab import __version__, paths

@@ -3,7 +3,9 @@
 import json
 import os
 import stat
+import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +15,7 @@ from aolab import FileError
 from aolab.output import check_writable, replacing
 from aolab.pictures.metadata import read_png, save_png
 
+posix = pytest.mark.skipif(os.name != "posix", reason="devices, pipes, links and signals of POSIX")
 PICTURE = np.zeros((2, 3, 3), np.uint8)
 
 
@@ -111,3 +114,95 @@ def test_pictures_of_others_are_refused_by_name(tmp_path):
     Image.fromarray(PICTURE).save(path, pnginfo=text)
     with pytest.raises(FileError, match=r"a\.png: its aolab metadata is damaged"):
         read_png(path)
+
+
+# --- links, devices, and files that a killed process left
+
+
+@posix
+def test_a_link_is_followed(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    for link, target in (("a.txt", "elsewhere/b.txt"), ("dangling.txt", "elsewhere/new.txt")):
+        (tmp_path / link).symlink_to(tmp_path / target)
+    (tmp_path / "elsewhere/b.txt").write_text("old")
+    for link in ("a.txt", "dangling.txt"):
+        with replacing(tmp_path / link) as file:
+            file.write(b"new")
+        assert (tmp_path / link).is_symlink()
+    assert entries(tmp_path / "elsewhere") == ["b.txt", "new.txt"]
+    assert (tmp_path / "elsewhere/b.txt").read_text() == (tmp_path / "elsewhere/new.txt").read_text() == "new"
+    (tmp_path / "lost").symlink_to(tmp_path / "missing/a.txt")
+    with pytest.raises(FileError, match=r"lost: it links to a file in .*missing, which does not exist"):
+        check_writable(tmp_path / "lost")
+
+
+@posix
+def test_a_device_and_a_pipe_are_written_to(tmp_path, full_device):
+    (tmp_path / "link").symlink_to(full_device)
+    for path in (full_device, tmp_path / "link"):
+        with pytest.raises(FileError, match=rf"cannot write {path}: No space left on device"), replacing(path) as file:
+            file.write(b"lost")
+    assert stat.S_ISCHR(os.lstat(full_device).st_mode)
+    assert (tmp_path / "link").is_symlink()
+    os.mkfifo(tmp_path / "pipe")
+    reader = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    with replacing(tmp_path / "pipe") as file:
+        file.write(b"through")
+    assert os.read(reader, 100) == b"through"
+    os.close(reader)
+    assert stat.S_ISFIFO((tmp_path / "pipe").stat().st_mode)
+
+
+@posix
+def test_a_buffer_goes_through_to_a_device(lab, boxes, full_device):
+    with pytest.raises(FileError, match=r"cannot write .*full: No space left on device"):
+        lab.render(boxes, "ssao").save_buffers(full_device)
+
+
+KILLED = """
+import os, signal
+from aolab.output import replacing
+with replacing("a.txt") as file:
+    file.write(b"half")
+    file.flush()
+    {ending}
+"""
+
+
+@posix
+def test_the_file_of_a_killed_process_is_removed_next_time(python, tmp_path):
+    (tmp_path / "a.txt").write_text("old")
+    assert python(KILLED.format(ending="os.kill(os.getpid(), signal.SIGKILL)")).returncode == -9
+    assert len(entries(tmp_path)) == 2
+    with replacing(tmp_path / "b.txt"):
+        pass
+    assert entries(tmp_path) == ["a.txt", "b.txt"]
+    assert (tmp_path / "a.txt").read_text() == "old"
+
+
+@posix
+def test_the_file_of_a_living_process_stays(tmp_path):
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).parents[1])}
+    writing = KILLED.format(ending="print('now', flush=True); input()")
+    command = [sys.executable, "-c", writing]
+    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen(command, cwd=tmp_path, env=environment, **pipes) as process:
+        assert process.stdout is not None
+        assert process.stdout.readline() == "now\n"
+        with replacing(tmp_path / "b.txt"):
+            pass
+        process.communicate("\n")
+    assert process.returncode == 0
+    assert entries(tmp_path) == ["a.txt", "b.txt"]
+    assert (tmp_path / "a.txt").read_text() == "half"
+
+
+def test_a_name_that_no_file_can_have_is_refused(tmp_path):
+    with pytest.raises(FileError, match=r"cannot write x{40}\.\.\.: the name has more than 255 bytes"):
+        check_writable(tmp_path / ("x" * 300))
+    with pytest.raises(FileError, match="cannot write"):
+        check_writable(f"{tmp_path}/a\0b")
+    long = tmp_path / ("é" * 125 + ".txt")  # 254 bytes: the temporary file's name is no longer
+    with replacing(long) as file:
+        file.write(b"x")
+    assert long.read_text() == "x"

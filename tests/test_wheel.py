@@ -48,6 +48,16 @@ def test_the_installed_wheel_renders(installed: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.wheel
+def test_the_installed_wheel_traces_rays_and_measures_errors(installed: Path, tmp_path: Path) -> None:
+    """Without any extra: Embree, FLIP and matplotlib come with the wheel."""
+    run(installed / "aolab", "reference", "cornell", "--size", "32x24", "--rays", "4", cwd=tmp_path)
+    compare = ("compare", "cornell", "--modules", "ssao", "--size", "32x24", "--rays", "4", "-o", "sheet.png")
+    assert "flip" in run(installed / "aolab", *compare, cwd=tmp_path)
+    with Image.open(tmp_path / "sheet.png") as sheet:
+        assert sheet.width > 100
+
+
+@pytest.mark.wheel
 @pytest.mark.parametrize("folder", ["glsl", "scenes"])
 def test_the_installed_wheel_carries_its_own_files(installed: Path, tmp_path: Path, folder: str) -> None:
     script = (

@@ -31,8 +31,6 @@ BOUND = {
     "aolab/pipeline": 18,
     "aolab/pipeline/occluders": 4,
     "aolab/scene": 3,
-    "aolab/shell": 10,
-    "aolab/studies": 19,
     "aolab/truth": 14,
     "docs": 52,
     "docs/modules": 23,
@@ -47,8 +45,6 @@ BOUND = {
     "tests/modules": 16,
     "tests/papers": 5,
     "tests/pipeline": 16,
-    "tests/shell": 6,
-    "tests/studies": 4,
     "tests/truth": 5,
     "tools": 2,
 }

@@ -8,6 +8,7 @@ from __future__ import annotations  # an older Python must get as far as the sen
 
 import ctypes
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -18,18 +19,16 @@ VENV = ROOT / ".venv"
 VENV_PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
 OLDEST_PYTHON = (3, 11)
 
-ELSEWHERE = {  # what Debian calls libegl1, libgl1 and libgl1-mesa-dri
-    "dnf": "dnf install mesa-libEGL mesa-libGL mesa-dri-drivers",
-    "zypper": "zypper install Mesa-libEGL1 Mesa-libGL1 Mesa-dri",
-    "pacman": "pacman -S mesa libglvnd",
-    "apk": "apk add mesa-egl mesa-gl mesa-dri-gallium",
-}
-WITHOUT_ROOT = """\
-  without root: take Python and Mesa's software renderer from conda-forge (conda or micromamba)
-      micromamba create -n aolab -c conda-forge python=3.12 mesa-llvmpipe libegl libgl
-      micromamba activate aolab
-      export __EGL_VENDOR_LIBRARY_DIRS="$CONDA_PREFIX/share/glvnd/egl_vendor.d"
-  and give the same make command again."""
+REMEDIES = runpy.run_path(str(ROOT / "aolab/shell/remedies.py"))  # the same as those of `aolab doctor`
+WITHOUT_ROOT = (
+    "\n      ".join(
+        (
+            "  without root: take Python and Mesa's software renderer from conda-forge (conda or micromamba)",
+            *REMEDIES["CONDA"],
+        )
+    )
+    + "\n  and give the same make command again."
+)
 
 
 def missing_packages() -> list[str]:
@@ -63,7 +62,7 @@ def explain(packages: list[str]) -> str:
     if shutil.which("apt-get"):
         as_root = "apt-get install " + " ".join(packages)
     else:
-        known = [command for manager, command in ELSEWHERE.items() if shutil.which(manager)]
+        known = [command for manager, command in REMEDIES["MESA"].items() if shutil.which(manager)]
         as_root = (
             known[0] if known else "install the packages that hold libEGL, libGL, Mesa's drivers, and Python's venv"
         )
@@ -114,13 +113,13 @@ def main(stage: str) -> None:
         require_system()
         make_venv()
         print("installing aolab and its libraries into .venv", flush=True)
-        pip_install("--editable", ".[truth]")
+        pip_install("--editable", ".")
     else:
         print(f"installing the {stage} tools into .venv", flush=True)
         if stage == "dev":
             offer_libatomic()
         pip_install("pip>=25.1")  # the first that knows --group
-        extras = "[truth,tune,mitsuba,notebook]" if stage == "dev" else "[truth]"  # the tests try every extra for real
+        extras = "[tune,mitsuba,notebook]" if stage == "dev" else ""  # the tests try every extra for real
         pip_install("--group", stage, "--editable", f".{extras}")
 
 

@@ -85,7 +85,7 @@ class Request:
     """
 
     vertex: str
-    fragment: str
+    fragment: str | Path
     constants: Mapping[str, Constant]
     aliases: Mapping[str, str]
     outputs: tuple[str, ...] | None
@@ -104,11 +104,11 @@ class Programs:
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
-        self._in_text: dict[str, Declared] = {}
+        self._in_text: dict[str | Path, Declared] = {}
 
     def get(
         self,
-        fragment: str,
+        fragment: str | Path,
         constants: Mapping[str, Constant] | None = None,
         aliases: Mapping[str, str] | None = None,
         vertex: str = FULLSCREEN,
@@ -127,7 +127,7 @@ class Programs:
         key = self._key(request)
         return self._programs[key] if key in self._programs else self._keep(_compile(request))
 
-    def declared(self, shader: str) -> Declared:
+    def declared(self, shader: str | Path) -> Declared:
         """The includes and samplers of a shader, before anything is compiled."""
         if shader not in self._in_text:
             self._in_text[shader] = declared(shader)
@@ -145,6 +145,8 @@ class Programs:
         self._told = stamps
         fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
         self._told = {}
+        if stale:
+            self._in_text.clear()
         for key in stale:
             del self._programs[key]
         for program in fresh:

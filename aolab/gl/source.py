@@ -1,6 +1,7 @@
 """Shader sources: `#include`, injected constants, and a map from the compiler's line numbers back to our files."""
 
 import re
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import isfinite
@@ -10,6 +11,7 @@ from .. import paths
 from ..errors import ShaderError, suggestion
 
 VERSION = "#version 330 core"
+SUFFIXES = (".glsl", ".frag", ".vert")
 _INCLUDE = re.compile(r'^\s*#\s*include\b\s*(?:"([^"]+)")?')
 _CONSTANT = re.compile(r"^(\s*const\s+(int|float|bool|uint)\s+(\w+)\s*);(.*)$")
 _CONDITION = re.compile(r"^\s*#\s*(?:if|elif)\b(.*)$")
@@ -57,11 +59,12 @@ class Source:
 
 
 def assemble(
-    shader: str, constants: Mapping[str, Constant] | None = None, aliases: Mapping[str, str] | None = None
+    shader: str | Path, constants: Mapping[str, Constant] | None = None, aliases: Mapping[str, str] | None = None
 ) -> Source:
     """Resolve a shader's includes and fill in its constants.
 
-    `shader` is a file under glsl/ ("ssao.frag") or GLSL text (anything with a line break). A line
+    `shader` is a file under glsl/ ("ssao.frag"), the path of another file, or GLSL text (anything with a line break).
+    An include of a file outside of glsl/ is looked up beside that file first, then under glsl/. A line
     `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the
     file, or to the GLSL text, that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a
     constant that is not given.
@@ -69,16 +72,16 @@ def assemble(
     builder = _Builder(dict(constants or {}), dict(aliases or {}))
     builder.emit(VERSION, "glsl", 0)
     if is_text(shader):
-        builder.add("<inline>", shader, [])
+        name = "<inline>"
+        builder.add(name, str(shader), [])
     else:
-        builder.include(shader, [], f"shader '{shader}'")
-    name = "<inline>" if is_text(shader) else f"glsl/{shader}"
+        name = builder.include(shader, [], f"shader '{shader}'")
     return Source(name, "\n".join(builder.text) + "\n", builder.lines, builder.files, builder.used)
 
 
-def is_text(shader: str) -> bool:
-    """Whether `shader` is GLSL text; otherwise it is the name of a file under glsl/."""
-    return "\n" in shader
+def is_text(shader: str | Path) -> bool:
+    """Whether `shader` is GLSL text; otherwise it is the name of a file under glsl/, or the path of another file."""
+    return isinstance(shader, str) and "\n" in shader
 
 
 @dataclass(frozen=True)
@@ -89,22 +92,61 @@ class Declared:
     samplers: frozenset[str]
 
 
-def declared(shader: str) -> Declared:
+def declared(shader: str | Path) -> Declared:
     """The includes and samplers of a shader. An include without a file, as of an alias, is not followed."""
     includes: set[str] = set()
     samplers: set[str] = set()
-    waiting = [shader]
+    waiting: list[tuple[str | Path, Path | None]] = [(shader, None)]
     while waiting:
-        one = waiting.pop()
-        path = paths.glsl() / one if not is_text(one) else None
-        if path is not None and not path.is_file():
+        one, including = waiting.pop()
+        path = None if is_text(one) else located(one, including)
+        if path is None and not is_text(one):
             continue
-        text = one if path is None else path.read_text(encoding="utf-8")
+        text = str(one) if path is None else path.read_text(encoding="utf-8")
         names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
         samplers.update(_SAMPLER.findall(_COMMENT.sub("", text)))
-        waiting += names - includes
+        waiting += [(name, path) for name in names - includes]
         includes |= names
     return Declared(frozenset(includes), frozenset(samplers))
+
+
+def located(name: str | Path, including: Path | None) -> Path | None:
+    """The file `name`, or None: under glsl/, or, if the file `including` is outside of glsl/, first beside that file.
+
+    A shader by itself (`including` is None) may also be in the working directory; a `Path` is looked up only there.
+    """
+    root = paths.glsl().resolve()
+    built_in = (root / name).resolve()
+    places = [built_in] if built_in.is_relative_to(root) and not isinstance(name, Path) else []
+    if including is None:
+        places.append(Path(name).resolve())
+    elif not including.is_relative_to(root):
+        places.insert(0, (including.parent / name).resolve())
+    return next(filter(_is_file, places), None)
+
+
+def beside(shader: str | Path, module: str) -> str | Path:
+    """The absolute path of a `shader` that stands in the folder of the Python module `module`; else `shader` itself."""
+    file = getattr(sys.modules.get(module), "__file__", None)
+    if not file or is_text(shader) or (isinstance(shader, str) and _is_file(paths.glsl() / shader)):
+        return shader
+    path = Path(file).parent / shader
+    return path.resolve() if _is_file(path) else shader
+
+
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):  # no name that a file could have
+        return False
+
+
+def _shown(path: Path) -> str:
+    """The name of a shader's file in messages: `glsl/FILE`, or its path, short if it is in the working directory."""
+    for folder, prefix in ((paths.glsl().resolve(), "glsl/"), (Path.cwd(), "")):
+        if path.is_relative_to(folder):
+            return prefix + path.relative_to(folder).as_posix()
+    return str(path)
 
 
 class _Builder:
@@ -121,27 +163,38 @@ class _Builder:
         self.text.append(text)
         self.lines.append((file, line))
 
-    def include(self, name: str, chain: list[str], where: str) -> None:
-        alias, name = name, self.aliases.get(name, name)
+    def include(self, name: str | Path, chain: list[Path], where: str) -> str:
+        """Add a file once, and return its name for messages; `chain` is the files that include it."""
+        alias, name = str(name), self.aliases.get(str(name), name)
         if is_text(name):
             if alias not in self.texts:  # once only
                 self.texts.add(alias)
-                self.add(f"<{alias}>", name, chain)
-            return
-        root = paths.glsl().resolve()
-        path = (root / name).resolve()
-        if not path.is_relative_to(root) or not path.is_file():
-            known = [str(p.relative_to(root)) for p in root.rglob("*") if p.suffix in (".glsl", ".frag", ".vert")]
-            raise ShaderError(f"{where}: no file 'glsl/{name}'{suggestion(name, [*known, *self.aliases])}")
-        name = path.relative_to(root).as_posix()  # one spelling, whatever was written
-        if name in chain:
-            raise ShaderError(f"{where}: include cycle: {' -> '.join([*chain[chain.index(name) :], name])}")
-        if path in self.files:
-            return  # once only
-        self.files.add(path)
-        self.add(f"glsl/{name}", path.read_text(encoding="utf-8"), [*chain, name])
+                self.add(f"<{alias}>", str(name), chain)
+            return f"<{alias}>"
+        including = chain[-1] if chain else None
+        path = located(name, including)
+        if path is None:
+            raise ShaderError(f"{where}: {self.missing(name, including)}")
+        if path in chain:
+            cycle = [*chain[chain.index(path) :], path]
+            raise ShaderError(f"{where}: include cycle: {' -> '.join(one.name for one in cycle)}")
+        if path not in self.files:  # once only
+            self.files.add(path)
+            self.add(_shown(path), path.read_text(encoding="utf-8"), [*chain, path])
+        return _shown(path)
 
-    def add(self, file: str, text: str, chain: list[str]) -> None:
+    def missing(self, name: str | Path, including: Path | None) -> str:
+        """The message about a file that is not there."""
+        if isinstance(name, Path):
+            return f"no file {name}"
+        root = paths.glsl().resolve()
+        known = [str(path.relative_to(root)) for path in root.rglob("*") if path.suffix in SUFFIXES]
+        if including is None or including.is_relative_to(root):
+            return f"no file 'glsl/{name}'{suggestion(name, [*known, *self.aliases])}"
+        known += [path.name for path in including.parent.iterdir() if path.suffix in SUFFIXES]
+        return f"no file '{name}'{suggestion(name, [*known, *self.aliases])}"
+
+    def add(self, file: str, text: str, chain: list[Path]) -> None:
         for number, line in enumerate(text.splitlines(), start=1):
             where = f"{file}:{number}"
             if line.lstrip().startswith("#version"):

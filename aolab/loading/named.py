@@ -11,11 +11,12 @@ from functools import lru_cache
 from numbers import Integral, Real
 from pathlib import Path
 from types import FunctionType
-from urllib.parse import quote, unquote
+from urllib.parse import quote
 
 from .. import paths
 from ..errors import Error, FileError, ParameterError, SceneError, suggestion
 from ..pictures.html import Listing
+from ..queries import query
 from ..scene.scene import Scene
 
 TRUTHS = {"true": True, "1": True, "yes": True, "on": True, "false": False, "0": False, "no": False, "off": False}
@@ -53,13 +54,13 @@ def load_scene(source: str, parameters: Mapping[str, object]) -> Scene | None:
 
     Raises `FileError` for an unknown scene, `ParameterError` for an unknown, repeated or ill-typed parameter.
     """
-    name, _, query = source.partition("?")
+    name = source.partition("?")[0]
     if not name.isidentifier():
         return None
     function = _function(name)
     known = _signature(function)
     values: dict[str, object] = {}
-    for key, value in [*parse_query(source, query), *parameters.items()]:
+    for key, value in [*query(source)[1].items(), *parameters.items()]:
         if key not in known:
             raise ParameterError(f"scene '{name}' has no parameter '{key}'{suggestion(key, known)}{_defaults(known)}")
         if key in values:
@@ -118,17 +119,6 @@ def _defaults(known: Mapping[str, inspect.Parameter]) -> str:
     if not known:
         return " (it takes no parameters)"
     return " (parameters: " + ", ".join(f"{key}={_text(known[key].default)}" for key in known) + ")"
-
-
-def parse_query(source: str, query: str) -> list[tuple[str, str]]:
-    """The pairs of `key=value&...`. Raises `ParameterError`, with the `source`, for anything else."""
-    pairs = []
-    for part in query.split("&") if query else []:
-        key, equals, value = part.partition("=")
-        if not equals or not key:
-            raise ParameterError(f"'{source}': '{part}' is not key=value")
-        pairs.append((unquote(key), unquote(value)))
-    return pairs
 
 
 def _type(parameter: inspect.Parameter) -> object:

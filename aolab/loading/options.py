@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ..errors import ParameterError, suggestion
-from .named import parse_query
+from ..queries import parameters
 
 
 class FileOptions(BaseModel):
@@ -32,7 +32,7 @@ class FileOptions(BaseModel):
 def options_from(what: str, query: str, keywords: Mapping[str, object]) -> FileOptions:
     """The options in a query and in keywords. Raises `ParameterError` for an unknown, repeated or ill-typed one."""
     given: dict[str, object] = {}
-    for key, value in [*parse_query(what, query), *keywords.items()]:
+    for key, value in [*parameters(what, query).items(), *keywords.items()]:
         if key in given:
             raise ParameterError(f"{what}: parameter '{key}' is given twice")
         if key not in FileOptions.model_fields:

@@ -14,6 +14,7 @@ from PIL import Image
 from ..errors import Notice, ParameterError, suggestion
 from ..output import replacing
 from ..pictures import display, html
+from ..table import table
 from .buffer import BufferComparison
 from .metrics import Measures, angles, differences, psnr
 from .pairing import Buffers, common, label, regions, size_of
@@ -73,7 +74,7 @@ class Comparison:
         height, width = self.regions["all"].shape
         lines = [f"{self.names[0]} against {self.names[1]}, {width}×{height}"]
         for name, one in self.buffers.items():
-            lines += ["", *_table(name, one.kind.unit, one.measures)]
+            lines += ["", _table(name, one.kind.unit, one.measures)]
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -182,23 +183,13 @@ def _plain(measures: dict[str, float]) -> dict[str, float | str | None]:
     return {name: plain(value) for name, value in measures.items()}
 
 
-def _table(name: str, unit: str, measures: dict[str, Measures]) -> list[str]:
-    """Lines: a row a region, a column a measure that any region has."""
+def _table(name: str, unit: str, measures: dict[str, Measures]) -> str:
+    """A row for each region, a column for each measure that any region has."""
     columns = [
         field.name
         for field in fields(Measures)
         if any(not math.isnan(getattr(m, field.name)) for m in measures.values())
     ]
-    width = 11
     head = f"{name}, {unit}" if unit else name
-    lines = [f"{head:<24}" + "".join(f"{column:>{width}}" for column in columns)]
-    for region, one in measures.items():
-        cells = (_cell(getattr(one, column)) for column in columns)
-        lines.append(f"  {region:<22}" + "".join(f"{cell:>{width}}" for cell in cells))
-    return lines
-
-
-def _cell(value: float) -> str:
-    if isinstance(value, int):
-        return str(value)
-    return "-" if math.isnan(value) else f"{value:.4g}" if abs(value) >= 1e-4 or value == 0 else f"{value:.1e}"
+    rows = [[f"  {region}", *(getattr(one, column) for column in columns)] for region, one in measures.items()]
+    return table({head: "", **dict.fromkeys(columns, ".4g")}, rows)

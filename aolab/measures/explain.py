@@ -15,6 +15,7 @@ from ..pipeline.frame import Frame
 from ..pipeline.lab import Lab
 from ..scene.camera import Camera
 from ..scene.scene import Scene
+from ..table import table
 
 CONVERGED = 64  # frames: noise falls to 1/8 of one frame's
 BACKGROUND = 153  # grey, in none of the colours of an error
@@ -88,12 +89,8 @@ class Explanation:
         return contact_sheet(pictures)
 
     def __str__(self) -> str:
-        rows = [f"{'part':<28}{'rmse':>9}{'bias':>10}{'share':>9}"]
-        rows += [
-            f"{name:<28}{row['rmse']:9.4f}{row['bias']:+10.4f}{100 * row['share']:8.1f}%"
-            for name, row in self.table().items()
-        ]
-        return "\n".join(rows)
+        columns = {"part": "", "rmse": ".4f", "bias": "+.4f", "share": ".1%"}
+        return table(columns, [(name, *row.values()) for name, row in self.table().items()])
 
 
 def explain(

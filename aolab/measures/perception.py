@@ -5,7 +5,7 @@ import math
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from ..errors import ParameterError
+from ..extras import need
 
 _C1, _C2 = 0.01**2, 0.03**2  # Wang et al. 2004, section III-C: K1 and K2 for a range of 1
 _SIGMA, _TRUNCATE = 1.5, 3.5  # its window, 11 × 11: 3.5 sigma reach 5 pixels
@@ -40,13 +40,7 @@ def flip_map(a: np.ndarray, b: np.ndarray, *, hdr: bool) -> np.ndarray:
     LDR-FLIP (Andersson et al. 2020) takes sRGB in [0, 1]; HDR-FLIP (2021) linear radiance from 0 on, and is the
     greatest difference over a range of exposures.
     """
-    try:
-        import flip_evaluator
-    except ImportError as error:
-        raise ParameterError(
-            f"FLIP needs flip-evaluator: pip install flip-evaluator, or flip=False ({error})"
-        ) from error
-
+    flip_evaluator = need("flip", ", or flip=False")
     test, reference = (
         np.ascontiguousarray(np.broadcast_to(one, (*one.shape[:2], 3)), np.float32) for one in (a, b)
     )  # fmt: skip

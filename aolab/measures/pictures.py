@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image
 
-from ..errors import ParameterError
+from ..extras import missing
 from .buffer import BufferComparison
 from .quantities import picture
 
@@ -18,7 +18,7 @@ try:
     from matplotlib.colors import Normalize
     from matplotlib.figure import Figure
 except ImportError as error:
-    raise ParameterError(f"pictures of errors need matplotlib: pip install matplotlib ({error})") from error
+    raise missing("pictures", error) from error
 
 # zero in the middle and white, more is red; or, for magnitudes, perceptually uniform from dark to bright
 SIGNED, MAGNITUDE = "RdBu_r", "viridis"

@@ -12,8 +12,10 @@ from ..gl.texture import Size
 from ..loading import load
 from ..modules import MODULES, Module, find
 from ..pipeline.api import shared_lab
+from ..progress import progress_bar
 from ..scene.camera import Camera
 from ..scene.environment import Environment
+from ..table import table
 from ..truth import reference
 from .comparison import compare
 from .metrics import Measures
@@ -54,11 +56,11 @@ class Relighting:
         })  # fmt: skip
 
     def __str__(self) -> str:
-        lines = [f"{self.buffer} under {len(self.degrees)} rotations: rmse {self.rmse:.4g}", ""]
-        lines += [f"{'degrees':>9}{'rmse':>11}{'bias':>11}{'relative':>11}"]
-        for degrees, one, relative in zip(self.degrees, self.measures, self.relative, strict=True):
-            lines.append(f"{degrees:>9.1f}{one.rmse:>11.4g}{one.bias:>11.4g}{relative:>11.4g}")
-        return "\n".join(lines)
+        columns = {"degrees": ".1f", "rmse": ".4g", "bias": ".4g", "relative": ".4g"}
+        found = zip(self.degrees, self.measures, self.relative, strict=True)
+        rows = [(degrees, one.rmse, one.bias, relative) for degrees, one, relative in found]
+        head = f"{self.buffer} under {len(self.degrees)} rotations: rmse {self.rmse:.4g}"
+        return f"{head}\n\n{table(columns, rows)}"
 
 
 def relight(
@@ -81,12 +83,14 @@ def relight(
         )
     degrees = [360 * i / k for i in range(k)]
     measures, relative = [], []
-    for angle in degrees:
-        turned = environment.rotated(angle)
-        one = compare(result(turned), truth(turned), buffer, flip=False)[buffer]
-        scale = float(np.sqrt(np.mean(one.reference[one.foreground].astype(np.float64) ** 2)))
-        measures.append(one.measures["all"])
-        relative.append(one.rmse / scale if scale > 0 else float("nan"))
+    with progress_bar("rotations", k) as bar:
+        for angle in degrees:
+            turned = environment.rotated(angle)
+            one = compare(result(turned), truth(turned), buffer, flip=False)[buffer]
+            scale = float(np.sqrt(np.mean(one.reference[one.foreground].astype(np.float64) ** 2)))
+            measures.append(one.measures["all"])
+            relative.append(one.rmse / scale if scale > 0 else float("nan"))
+            bar.update()
     return Relighting(buffer, degrees, measures, relative)
 
 

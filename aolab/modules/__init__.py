@@ -5,8 +5,9 @@ from types import ModuleType
 from typing import Literal
 
 from ..pictures.html import Listing
-from .base import Module, find
+from .base import Module
 from .buffers import BUFFERS, Buffer
+from .find import find
 from .none import Unoccluded
 from .s3ho import S3HO
 from .ssao import SSAO

@@ -2,11 +2,13 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeVar
 
 from pydantic import ConfigDict, Field, WrapValidator, model_serializer
 
-from ..errors import ParameterError, suggestion
+from ..errors import ParameterError
+from ..gl.source import beside
 from ..scene.scene import Scene
 from .buffers import Buffer
 from .estimate import Estimate
@@ -111,10 +113,11 @@ else:
 class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
-    `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, or GLSL text), `outputs` (buffer:
-    format), `derived` (name: function of the frame and of "" or "_raw", for what is read off its outputs). `lit` says
-    that the estimate itself reads the environment, so that new light asks for a new estimate. `buffers` describes
-    outputs and derived buffers that the table of buffers lacks.
+    `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, GLSL text, or the path of a file of
+    your own, relative to the Python file or to the working directory), `outputs` (buffer: format), `derived` (name:
+    function of the frame and of "" or "_raw", for what is read off its outputs). `lit` says that the estimate itself
+    reads the environment, so that new light asks for a new estimate. `buffers` describes outputs and derived buffers
+    that the table of buffers lacks.
     A module gives `visibility`, and may give `irradiance`, the environment's with occlusion: the lighting reflects it
     in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
     Raises `ParameterError`, when the class is made, for a parameter or an output whose name belongs to the pipeline.
@@ -128,7 +131,7 @@ class Module(Parameters):
     name: ClassVar[str] = ""
     title: ClassVar[str] = ""
     paper: ClassVar[str] = ""
-    shader: ClassVar[str] = ""
+    shader: ClassVar[str | Path] = ""
     outputs: ClassVar[Mapping[str, str]] = {"visibility": "R16F"}
     derived: ClassVar[Mapping[str, "Callable[[Readable, str], np.ndarray]"]] = {}
     buffers: ClassVar[Sequence[Buffer]] = ()
@@ -151,6 +154,7 @@ class Module(Parameters):
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
         super().__pydantic_init_subclass__(**kwargs)
+        cls.shader = beside(cls.shader, cls.__module__)
         own = [name for name in cls.model_fields if name not in Module.model_fields]
         check_parameters(
             label(cls),
@@ -298,14 +302,3 @@ def with_distance_clamp(module: Bouncing) -> Bouncing:
     if values["distance_clamp"] != AUTO:
         return module
     return module.replace(distance_clamp=values["radius"] / values["directions"] ** 0.5)
-
-
-def find(module: "str | Module | type[Module]", modules: Mapping[str, type[Module]], **parameters: object) -> Module:
-    """A module by name, class or instance, with these parameters. Raises `ParameterError` for an unknown one."""
-    if isinstance(module, Module):
-        return module.replace(**parameters) if parameters else module
-    if isinstance(module, str):
-        if module not in modules:
-            raise ParameterError(f"no module '{module}'{suggestion(module, modules)}")
-        module = modules[module]
-    return module(**parameters)  # pyright: ignore[reportArgumentType]  # pydantic checks them

@@ -1,8 +1,12 @@
 """Parameters, stated once: validation, command line, uniforms, sliders and docs derive from the statement."""
 
+import json
+import re
+from collections.abc import Mapping
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, PydanticUserError, ValidationError
 
 from ..errors import ParameterError, suggestion
 from ..gl.source import Constant
@@ -24,7 +28,28 @@ def parameter(
     return Field(default, description=description, ge=ge, gt=gt, le=le, json_schema_extra={"unit": unit})
 
 
-class Parameters(BaseModel):
+class _Declared(type(BaseModel)):
+    """The metaclass of parameters: a mistake in the declaration of a class is a `ParameterError`."""
+
+    def __new__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any) -> type:
+        try:
+            return super().__new__(cls, name, bases, namespace, **options)
+        except PydanticUserError as error:
+            raise ParameterError(_declaration(name, namespace, error)) from None
+
+
+def _declaration(name: str, namespace: Mapping[str, Any], error: PydanticUserError) -> str:
+    """The message about a wrong declaration."""
+    first = str(error).partition("\n")[0]
+    fields = [key for key, value in namespace.items() if not key.startswith("_") and re.search(rf"\b{key}\b", first)]
+    if error.code == "model-field-missing-annotation" and fields:
+        value = namespace[fields[0]]
+        kind = type(getattr(value, "default", value)).__name__
+        return f"class {name}: parameter '{fields[0]}' has no type; write {fields[0]}: {kind} = ..."
+    return f"class {name}: {first}"
+
+
+class Parameters(BaseModel, metaclass=_Declared):
     """Values with names, types, ranges and units. Raises `ParameterError` for an unknown name or a wrong value."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False)
@@ -37,6 +62,21 @@ class Parameters(BaseModel):
                 super().__init__(**values)
             except ValidationError as error:
                 raise ParameterError(_explain(type(self), error, values)) from None
+            except PydanticUserError as error:
+                raise ParameterError(_declaration(type(self).__name__, {}, error)) from None
+
+    @classmethod
+    def read(cls, values: Mapping[str, Any]) -> dict[str, Any]:
+        """`values` with each text replaced by the JSON value that it spells: a number, true or false."""
+
+        def value(name: str, given: Any) -> Any:
+            owner = cls.stated().get(name)
+            if isinstance(given, str) and owner is not None and owner.model_fields[name].annotation is not str:
+                with suppress(json.JSONDecodeError):
+                    return json.loads(given)
+            return given
+
+        return {name: value(name, given) for name, given in values.items()}
 
     @classmethod
     def prepared(cls, values: dict[str, Any]) -> dict[str, Any]:

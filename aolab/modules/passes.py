@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Literal
 
 from ..gl.source import Constant
@@ -12,7 +13,9 @@ from .buffers import LIT
 
 @dataclass(frozen=True)
 class Pass:
-    """`shader` (a file under glsl/, or GLSL text) reads textures by the names of its samplers and fills `outputs`.
+    """`shader` reads textures by the names of its samplers and fills `outputs`.
+
+    `shader` is a file under glsl/, the path of another file, or GLSL text.
 
     `name` is the pass's name in timings. `outputs` maps each buffer to its format; the shader's `out` variable of the
     same name fills it, whatever their order. `writes` (`out` variable: buffer) and `reads` (sampler: buffer) are for
@@ -22,7 +25,7 @@ class Pass:
     """
 
     name: str
-    shader: str
+    shader: str | Path
     outputs: Mapping[str, str]
     constants: Mapping[str, Constant] = field(default_factory=dict)
     reads: Mapping[str, str] = field(default_factory=dict)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from ..errors import ParameterError
+from ..extras import missing
 from ..gl.texture import Size
 from ..gl.thread import handed
 from ..loading import load
@@ -42,7 +42,7 @@ def explore(
     try:
         from .explorer import Explorer
     except ImportError as error:
-        raise ParameterError(f"explore needs anywidget: pip install anywidget ({error})") from error
+        raise missing("notebook", error) from error
     known = {**MODULES, **{one.name or one.__name__: one for one in modules or ()}}
     first = find(module, known, **parameters)
     known.setdefault(first.name or type(first).__name__, type(first))

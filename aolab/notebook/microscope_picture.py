@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from ..errors import ParameterError
+from ..extras import missing
 from ..scene.view import View
 from .replay import Samples
 
@@ -20,7 +20,7 @@ def draw(seen: Any) -> Image.Image:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise ParameterError(f"the microscope's picture needs matplotlib: pip install matplotlib ({error})") from error
+        raise missing("pictures", error) from error
     figure = Figure((10, 4.6), dpi=90, facecolor="#fafaf8")
     canvas = FigureCanvasAgg(figure)
     _over_the_image(figure.add_subplot(1, 2, 1), seen)

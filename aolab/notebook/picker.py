@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from ..errors import ParameterError
+from ..extras import missing
 from ..pipeline.frame import Frame
 
 if TYPE_CHECKING:
@@ -19,5 +19,5 @@ def glyph_picker(frame: Frame) -> "GlyphPicker":
     try:
         from .widget import GlyphPicker
     except ImportError as error:
-        raise ParameterError(f"glyph_picker needs anywidget: pip install anywidget ({error})") from error
+        raise missing("notebook", error) from error
     return GlyphPicker(frame)

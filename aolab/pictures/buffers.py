@@ -7,6 +7,7 @@ import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 from ..errors import ParameterError
+from ..extras import missing
 from .tone import shown, srgb
 
 SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share")  # in [0, 1], shown in grey
@@ -29,6 +30,10 @@ class Scale:
     low: float
     high: float
     colors: str
+
+    def __str__(self) -> str:
+        ends = {"gray": ("black ", "white "), "RdBu_r": ("blue ", "red ")}.get(self.colors, (f"{self.colors} ", ""))
+        return f"{ends[0]}{self.low:.4g} to {ends[1]}{self.high:.4g}"
 
     def pixels(self, values: np.ndarray) -> np.ndarray:
         """(H, W, 3) uint8 of `values` (H, W); values that are not finite get the colour of the background."""
@@ -72,11 +77,28 @@ def buffer_pixels(name: str, values: np.ndarray, scale: Scale | None) -> np.ndar
     known = np.isfinite(values).all(axis=2, keepdims=True)
     values = np.where(known, values, 0)
     kind = name.removesuffix("_raw")
-    if kind in DIRECTIONS or (kind not in (*RADIANCE, "albedo") and values.min(initial=0) < 0):
+    if not _is_colour(kind, values):
         drawn = values.any(axis=2, keepdims=True)  # a direction of length 0 is none
         return np.where(drawn, np.rint(np.clip(values * 0.5 + 0.5, 0, 1) * 255).astype(np.uint8), BACKGROUND)
     pixels = shown(np.maximum(values, 0)) if kind in RADIANCE else srgb(values)
     return np.where(known, pixels, BACKGROUND)
+
+
+def scale_in_words(name: str, values: np.ndarray) -> str:
+    """The meaning of the colours that `buffer_pixels` gives the buffer `name`."""
+    kind = name.removesuffix("_raw")
+    if (scale := scale_of(name, values)) is not None:
+        return str(scale)
+    if values.dtype == np.uint8:
+        return "sRGB"
+    if kind in RADIANCE:
+        return "filmic tone map, exposure 1, sRGB"
+    return "linear 0 to 1, in sRGB" if _is_colour(kind, values) else "black -1 to white 1 in each channel"
+
+
+def _is_colour(kind: str, values: np.ndarray) -> bool:
+    """Whether three channels are a colour; otherwise they are the components of a direction."""
+    return kind in (*RADIANCE, "albedo") or (kind not in DIRECTIONS and np.nanmin(values, initial=0) >= 0)
 
 
 def buffer_picture(name: str, values: np.ndarray, title: str = "") -> Image.Image:
@@ -126,5 +148,5 @@ def _table(name: str) -> np.ndarray:
     try:
         from matplotlib import colormaps
     except ImportError as error:
-        raise ParameterError(f"a picture of this buffer needs matplotlib: pip install matplotlib ({error})") from error
+        raise missing("pictures", error) from error
     return (colormaps[name](np.arange(256))[:, :3] * 255).round().astype(np.uint8)

@@ -40,6 +40,9 @@ def read_png(path: str | PathLike[str]) -> dict[str, Any]:
     if text is None:
         raise FileError(f"{path} has no aolab metadata: it was not saved by aolab")
     try:
-        return json.loads(text)
-    except json.JSONDecodeError as error:
+        info = json.loads(text)
+    except (ValueError, RecursionError) as error:
         raise FileError(f"{path}: its aolab metadata is damaged: {error}") from error
+    if not isinstance(info, dict):
+        raise FileError(f"{path}: its aolab metadata is damaged: no JSON object")
+    return info

@@ -15,6 +15,7 @@ from ..gl.texture import Pool, read
 from ..gl.thread import handed
 from ..modules.buffers import BUFFERS, Buffer
 from ..pictures import display
+from ..pictures.buffer_files import save_buffers
 from ..pictures.metadata import save_png
 from ..scene.camera import Camera
 from ..scene.scene import Scene
@@ -114,11 +115,12 @@ class Frame:
         save_png(path, self.image, self.info)
 
     def save_buffers(self, path: str | PathLike[str]) -> None:
-        """Write every buffer by name as a compressed .npz; replaces atomically. Background is NaN in visibility."""
-        from ..output import replacing
+        """Write every buffer by name, as compressed .npz or, by the suffix of `path`, as multi-layer .exr.
 
-        with replacing(path) as file:
-            np.savez_compressed(file, **{name: self[name] for name in self.buffers})  # type: ignore[arg-type]
+        Replaces `path` atomically. The background is NaN in visibility.
+        """
+        directions = {name for name, about in self.table.items() if about.kind == "direction"}
+        save_buffers(path, {name: self[name] for name in self.buffers}, directions)
 
     def stats(self) -> dict[str, Any]:
         """How it was made and what it cost, for `--stats`; times in milliseconds."""

@@ -98,7 +98,7 @@ class Lab:
                 _as_scene(scene),
                 find(module, MODULES, **parameters),
                 camera,
-                check_size(size or self.size),
+                check_size(self.size if size is None else size),
                 _whole("seed", seed, 0),
                 _whole("accumulate", accumulate, 1),
                 _display(exposure, tone_map),

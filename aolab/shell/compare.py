@@ -1,89 +1,129 @@
-"""`aolab compare`: from words to a sheet."""
+"""`aolab compare`."""
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Annotated
 
-import numpy as np
+from typer import Argument, Option
 
-from ..errors import FileError, ParameterError
-from ..loading import load
-from ..measures.turning_light import relighting_error
-from ..modules import MODULES, Module
-from ..output import check_writable, replacing
-from ..studies.ranking import Entry, compare_modules, label, sheet, with_their_truth
-from .job import parse_size, typed
+from . import completion, options
+
+if TYPE_CHECKING:
+    from ..measures.turning_light import Relighting
+    from ..modules import Module
+    from ..studies.ranking import Entry
+
+MEASURES = ("rmse", "bias", "p99", "ssim", "flip")
 
 
-def compare_command(
+def compare(
+    scene: Annotated[
+        str, Argument(metavar="SCENE", help="A scene by name, or a model file.", autocompletion=completion.scenes)
+    ],
+    modules: Annotated[
+        str | None, Option(metavar="A,B", help="The modules, as in 'none,ssao?steps=4'. Default: all.")
+    ] = None,
+    size: options.PixelSize = "480x270",
+    rays: options.Rays = 256,
+    radius: options.Radius = None,
+    buffer: Annotated[str, Option(metavar="NAME", help="The buffer that is compared.")] = "visibility",
+    output: Annotated[
+        Path | None, Option("-o", "--output", metavar="FILE.png", help="Write a sheet of pictures, a row a module.")
+    ] = None,
+    relight: Annotated[
+        int | None,
+        Option(metavar="K", min=1, help="Compare ambient light instead, under K rotations of the environment."),
+    ] = None,
+    flip: Annotated[bool, Option("--flip/--no-flip", help="Measure FLIP, the slowest of the measures.")] = True,
+    as_json: options.Json = False,
+) -> None:
+    """Compare modules with the ray-traced truth.
+
+    Prints a line for each module, the least error first. The time grows with pixels, rays and modules, and with K
+    rotations; a bar shows the time that is left.
+    """
+    from ..errors import ParameterError
+    from ..modules import MODULES, find
+    from . import text
+
+    chosen = [find(name, MODULES) for name in text.listed(modules) or MODULES]
+    if relight is not None:
+        if output is not None or buffer != "visibility":
+            raise ParameterError("--relight prints errors of ambient light: it takes no -o and no --buffer")
+        found = _relit(scene, chosen, text.size(size), rays, radius, relight)
+        print(_relit_json(found) if as_json else _relit_table(found, relight))
+        return
+    entries = _compared(scene, chosen, text.size(size), rays, radius, buffer, output, flip)
+    print(json.dumps([one.to_dict() for one in entries], indent=2, allow_nan=False) if as_json else _table(entries))
+
+
+def _compared(
     scene: str,
-    modules: str | None,
-    size: str,
+    modules: "list[Module]",
+    size: tuple[int, int],
     rays: int,
     radius: float | None,
     buffer: str,
     output: Path | None,
-    as_json: bool,
-) -> str:
-    """Compare, write the sheet to `output`, and return what is to be printed."""
+    flip: bool,
+) -> "list[Entry]":
+    from ..extras import need
+    from ..output import replacing
+    from ..studies.ranking import compare_modules, sheet
+    from .files import check_picture
+
     if output is not None:
-        if output.suffix.lower() != ".png":
-            raise FileError(f"cannot write {output}: the sheet is written as .png")
-        check_writable(output)
-    entries = compare_modules(scene, _chosen(modules), size=parse_size(size), rays=rays, radius=radius, buffer=buffer)
+        check_picture(output)
+        need("pictures", ", or leave out -o")
+    entries = compare_modules(scene, modules, size=size, rays=rays, radius=radius, buffer=buffer, flip=flip)
     if output is not None:
         with replacing(output) as file:
             sheet(entries).save(file, "PNG")
-    if as_json:
-        return json.dumps([entry.to_dict() for entry in entries], indent=2, allow_nan=False)
-    return table(entries)
+    return entries
 
 
-def relight_command(
-    scene: str, modules: str | None, size: str, rays: int, radius: float | None, turns: int, as_json: bool
-) -> str:
-    """The error of each module's ambient light as the environment turns around the scene, best first, to be printed."""
-    loaded = load(scene)
-    found = [
-        (label(one, loaded), relighting_error(loaded, one, turns, size=parse_size(size), rays=rays, like=like))
-        for one, like in with_their_truth(loaded, _chosen(modules), radius)
-    ]
-    found.sort(key=lambda item: item[1].rmse)
-    if as_json:
-        return json.dumps([{"module": name, **json.loads(one.to_json())} for name, one in found], indent=2)
-    width = max(len(name) for name, _ in found)
-    lines = [f"{'':<{width}}{'rmse':>10}{'relative':>10}{'worst':>10}{'at':>7}   ambient, {turns} turns"]
-    for name, one in found:
-        mean, worst = float(np.mean(one.relative)), one.measures[one.worst].rmse
-        lines.append(f"{name:<{width}}{one.rmse:>10.4f}{mean:>10.3f}{worst:>10.4f}{one.degrees[one.worst]:>6.0f}°")
-    return "\n".join(lines)
+def _table(entries: "list[Entry]") -> str:
+    from ..table import table
 
-
-def _chosen(modules: str | None) -> list[Module]:
-    if modules is None:
-        return [module() for module in MODULES.values()]
-    return [parse_module(text) for text in modules.split(",")]
-
-
-def parse_module(text: str) -> Module:
-    """'ssao?directions=32&steps=4' as a module, parameters written as those of scenes are. Raises `ParameterError`."""
-    name, _, rest = text.strip().partition("?")
-    parameters: dict[str, Any] = {}
-    for pair in filter(None, rest.split("&")):
-        key, separator, value = pair.partition("=")
-        if not separator:
-            raise ParameterError(f"--modules {text}: write NAME?KEY=VALUE&KEY=VALUE, as in ssao?directions=32")
-        parameters[key.strip().replace("-", "_")] = value.strip()
-    return typed(name, parameters)
-
-
-def table(entries: list[Entry]) -> str:
-    """A line a module, best first."""
-    width = max(len(entry.label) for entry in entries)
-    columns = ("rmse", "bias", "p99", "ssim", "flip")
-    lines = [f"{'':<{width}}" + "".join(f"{name:>10}" for name in (*columns, "frame ms"))]
+    columns = {"": "", **dict.fromkeys(MEASURES, ".4f"), "frame ms": ".1f"}
+    rows = []
     for entry in entries:
         one = next(iter(entry.comparison.buffers.values()))
-        cells = [*(f"{getattr(one, name):>10.4f}" for name in columns), f"{entry.milliseconds:>10.1f}"]
-        lines.append(f"{entry.label:<{width}}" + "".join(cells))
-    return "\n".join(lines)
+        rows.append([entry.label, *(getattr(one, name) for name in MEASURES), entry.milliseconds])
+    return table(columns, rows)
+
+
+def _relit(
+    scene: str, modules: "list[Module]", size: tuple[int, int], rays: int, radius: float | None, turns: int
+) -> "dict[str, Relighting]":
+    """{module: errors}, the least error first."""
+    from ..loading import load
+    from ..measures.turning_light import relighting_error
+    from ..progress import progress_bar
+    from ..studies.ranking import label, with_their_truth
+
+    loaded = load(scene)
+    pairs = with_their_truth(loaded, modules, radius)
+    found = {}
+    with progress_bar("modules", len(pairs)) as bar:
+        for module, like in pairs:
+            found[label(module, loaded)] = relighting_error(loaded, module, turns, size=size, rays=rays, like=like)
+            bar.update()
+    return dict(sorted(found.items(), key=lambda item: item[1].rmse))
+
+
+def _relit_json(found: "dict[str, Relighting]") -> str:
+    return json.dumps([{"module": name, **json.loads(one.to_json())} for name, one in found.items()], indent=2)
+
+
+def _relit_table(found: "dict[str, Relighting]", turns: int) -> str:
+    import numpy as np
+
+    from ..table import table
+
+    rows = []
+    for name, one in found.items():
+        worst = one.measures[one.worst].rmse
+        rows.append([name, one.rmse, float(np.mean(one.relative)), worst, f"{one.degrees[one.worst]:.0f}°"])
+    columns = {f"ambient, {turns} rotations": "", "rmse": ".4f", "relative": ".3f", "worst": ".4f", "at": ">"}
+    return table(columns, rows)

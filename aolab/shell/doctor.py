@@ -1,35 +1,39 @@
-"""What can render on this machine, and the remedy for what cannot."""
+"""`aolab doctor`: can this machine render, and how to mend it if not?"""
 
-import importlib.metadata
-import importlib.util
-import os
-import platform
+import json
+import shutil
 import sys
 from typing import Any
 
-from ..errors import ContextError
-from ..version import __version__
+import typer
 
-# extra: (module to import, what it is for, how to get it)
-_EXTRAS = {
-    "truth": (
-        "embreex",
-        "the ray-traced truth and error measures",
-        "pip install embreex matplotlib flip-evaluator",
-    ),
-    "mitsuba": ("mitsuba", "a path tracer as second opinion", "pip install mitsuba"),
-    "tune": ("optuna", "fitting parameters", "pip install optuna"),
-    "draco": ("DracoPy", "glTF files that Draco compressed", "pip install DracoPy"),
-    "notebook": ("anywidget", "picking pixels in a notebook", "pip install anywidget"),
-    "pyrender": ("pyrender", "pyrender scenes as input", "pip install scikit-robot-pyrender"),
-    "jupyter": ("IPython", "frames that show themselves in notebooks", "pip install jupyterlab"),
-}
+from . import options
+from .remedies import CONDA, MESA
+
 _LIBRARIES = ("numpy", "moderngl", "glcontext", "trimesh", "Pillow", "OpenEXR", "pydantic", "typer")
 
 
+def doctor(as_json: options.Json = False) -> None:
+    """Check that this machine can render, and list what is missing.
+
+    Prints the renderer, versions, devices and optional libraries, and the command that installs what is missing. The
+    exit code is 1 if nothing can be rendered.
+    """
+    findings = examine()
+    print(json.dumps(findings, indent=2) if as_json else report(findings))
+    if not findings["renders"]:
+        raise typer.Exit(1)
+
+
 def examine() -> dict[str, Any]:
-    """All findings; `renders`: whether anything can render here; `remedies`: what to do where something is missing."""
+    """All findings. `renders`: whether this machine can render; `remedies`: steps that mend it."""
+    import importlib.metadata
+    import platform
+
+    from ..errors import ContextError
+    from ..extras import EXTRAS, install_command, is_installed
     from ..gl import context
+    from ..version import __version__
 
     findings: dict[str, Any] = {
         "aolab": __version__,
@@ -56,10 +60,10 @@ def examine() -> dict[str, Any]:
     except ContextError as error:
         findings["error"] = str(error)
         findings["remedies"] += _remedies()
-    findings["extras"] = {}
-    for name, (module, purpose, remedy) in _EXTRAS.items():
-        found = importlib.util.find_spec(module) is not None
-        findings["extras"][name] = "found" if found else f"missing: {purpose}; {remedy}"
+    findings["extras"] = {
+        name: "found" if is_installed(name) else f"missing: {extra.purpose}; {install_command(extra.package)}"
+        for name, extra in EXTRAS.items()
+    }
     return findings
 
 
@@ -70,31 +74,28 @@ def _draw_one_pixel(gl: Any) -> bytes:
 
 
 def _remedies() -> list[str]:
+    import os
+
     if not sys.platform.startswith("linux"):
         return ["update the graphics driver: OpenGL 3.3 is needed"]
-    remedies = [
-        "Debian and Ubuntu: sudo apt install libegl1 libgl1 libgl1-mesa-dri",
-        "Fedora: sudo dnf install mesa-libEGL mesa-libGL mesa-dri-drivers",
-        "without root: conda install -c conda-forge mesa-llvmpipe",
-    ]
+    here = [f"sudo {command}" for manager, command in MESA.items() if shutil.which(manager)]
+    remedies = here or [f"sudo {command}" for command in MESA.values()]
+    remedies.append(f"without root, and then install aolab there: {'; '.join(CONDA)}")
     if os.environ.get("AOLAB_DEVICE"):
-        remedies.insert(0, f"unset AOLAB_DEVICE (now {os.environ['AOLAB_DEVICE']}) to let aolab choose")
+        remedies.insert(0, f"unset AOLAB_DEVICE (now {os.environ['AOLAB_DEVICE']}): then aolab chooses the device")
     if override := os.environ.get("MESA_GL_VERSION_OVERRIDE"):
         remedies.insert(0, f"MESA_GL_VERSION_OVERRIDE is {override}; it must be 3.3 or more, or unset")
     return remedies
 
 
 def report(findings: dict[str, Any]) -> str:
-    """The findings as lines to read."""
+    """The findings as lines of text."""
     lines = []
     for key, value in findings.items():
         if isinstance(value, dict):
             lines += [f"{key}:", *(f"  {name}: {text}" for name, text in value.items())]
         elif isinstance(value, list):
-            lines += [
-                f"{key}: {'none' if not value else ''}".rstrip(),
-                *(f"  {i}: {text}" for i, text in enumerate(value)),
-            ]
+            lines += [f"{key}:" if value else f"{key}: none", *(f"  {i}: {text}" for i, text in enumerate(value))]
         else:
             lines.append(f"{key}: {value}")
     return "\n".join(lines)

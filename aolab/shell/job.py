@@ -1,111 +1,125 @@
-"""One render as the shell asks for it: from words to a frame, and to files."""
+"""A picture to make: scene, module, camera and settings, from options or from the metadata of a picture."""
 
-import json
 import warnings
-from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
+from inspect import signature
 from pathlib import Path
-from typing import Any, Self
+from typing import Any
+
+from pydantic import TypeAdapter, ValidationError, create_model
 
 from ..errors import FileError, Notice, ParameterError
 from ..gl.texture import Size
 from ..modules import MODULES, Module, find
-from ..output import check_writable, replacing
 from ..pictures.metadata import read_png
 from ..pipeline.frame import Frame
 from ..pipeline.lab import DEFAULT_SIZE, Lab
-from ..scene.camera import Camera, Vec3
+from ..scene.camera import Camera
 from ..scene.scene import Scene
+from . import text
+
+REFERENCE = "reference"  # the module's name in the metadata of a ray-traced picture
 
 
 @dataclass
 class Job:
-    """What to render and how; `parameters` may still be text, as `--set` gives it."""
+    """A picture to make. The names are those of the metadata in a PNG; `parameters` may be text, as --set gives it.
+
+    The picture shows `buffer`. `camera` is the scene's if None; `moved` overrides its eye, target, up or fov.
+    """
 
     scene: str | None = None
     module: str = "ssao"
     parameters: dict[str, Any] = field(default_factory=dict)
     camera: Camera | None = None
-    eye: Vec3 | None = None
-    target: Vec3 | None = None
-    fov: float | None = None
     size: Size = DEFAULT_SIZE
     seed: int = 0
     accumulate: int = 1
     exposure: float = 1.0
-    tone_map: Any = "filmic"
+    tone_map: str = "filmic"
+    buffer: str = "image"
+    moved: dict[str, Any] = field(default_factory=dict)
 
-    @classmethod
-    def like(cls, picture: Path) -> Self:
-        """The job that made this picture. Raises `FileError` where the picture does not say."""
-        info = read_png(picture)
-        try:
-            return cls(
-                scene=info["scene"],
-                module=info["module"],
-                parameters=info["parameters"],
-                camera=Camera(**info["camera"]),
-                size=tuple(info["size"]),
-                seed=info["seed"],
-                accumulate=info["accumulate"],
-                exposure=info["exposure"],
-                tone_map=info["tone_map"],
-            )
-        except (KeyError, TypeError) as error:
-            raise FileError(f"{picture}: its aolab metadata is incomplete: {error}") from error
+    def use(self, module: str | None, settings: dict[str, Any]) -> None:
+        """Choose another module, with its defaults, or only other parameters. Raises `ParameterError`."""
+        if module is not None and module != self.module:
+            self.module, self.parameters = module, {}
+        if self.module == REFERENCE:
+            self.parameters |= settings
+        else:
+            self.parameters = type(find(self.module, MODULES)).changed(self.parameters, settings)
 
-    def place_camera(self, eye: str | None, target: str | None, fov: float | None) -> None:
-        """Take the camera's words; what is not said stays as the picture's or the scene's camera has it."""
-        self.eye = None if eye is None else _vector("--eye", eye)
-        self.target = None if target is None else _vector("--target", target)
-        self.fov = fov
+    def move(self, eye: str | None, target: str | None, up: str | None, fov: float | None) -> None:
+        """Override values of the camera; None leaves a value as it is."""
+        places = {"eye": eye, "target": target, "up": up}
+        self.moved = {name: text.vector(f"--{name}", given) for name, given in places.items() if given is not None}
+        if fov is not None:
+            self.moved |= {"fov": fov, "fit": False}  # --fov is vertical in a picture of any shape
 
     def choose(self, *, size: str | None, **values: Any) -> None:
-        """Override what was said; None leaves it."""
+        """Override settings; None leaves a setting as it is."""
         if size is not None:
-            self.size = parse_size(size)
+            self.size = text.size(size)
         for name, value in values.items():
             if value is not None:
                 setattr(self, name, value)
 
-    def render(self, output: Path, buffers: Path | None = None, stats: Path | None = None) -> Frame:
-        """Render and write. Everything that can be refused is refused before the work."""
-        _check_outputs(output, buffers, stats)
-        module = typed(self.module, self.parameters)
+    def render(self, warm: bool = False) -> Frame:
+        """Render the picture; `warm` repeats the frame, so that its times do not contain the shaders' compilation."""
+        if self.module == REFERENCE:
+            raise ParameterError("the picture was ray-traced: use `aolab reference --like`, or choose a --module")
+        module = find(self.module, MODULES, **self.parameters)
         scene, notes = self._load()
         lab = Lab(self.size)
-        view = {"camera": self._camera(scene), "seed": self.seed, "accumulate": self.accumulate}
-        display = {"exposure": self.exposure, "tone_map": self.tone_map}
-        frame = lab.render(scene, module, **view, **display)
-        if stats:
-            frame = lab.render(scene, module, **view, **display)  # the first one compiled the shaders
-        _write(frame, notes, output, buffers, stats)
-        return frame
+        settings: dict[str, Any] = {
+            name: getattr(self, name) for name in ("seed", "accumulate", "exposure", "tone_map")
+        }
+        for _ in range(2 if warm else 1):
+            frame = lab.render(scene, module, camera=self._camera(scene), **settings)
+        frame.notes = [*notes, *frame.notes]  # pyright: ignore[reportPossiblyUnboundVariable]
+        return frame  # pyright: ignore[reportPossiblyUnboundVariable]
 
-    def trace(
-        self, rays: int, radius: float | None, output: Path, buffers: Path | None = None, stats: Path | None = None
-    ) -> Frame:
-        """Ray-trace and write; the module gives radius and falloff, unless `radius` is said."""
+    def trace(self, rays: int | None, radius: float | None) -> Frame:
+        """Ray-trace the picture with the radius and the falloff of the module; `radius` replaces the module's."""
         from ..truth import reference
+        from ..truth.buffers import BUFFERS
         from ..truth.reference import DEFAULT_BUFFERS
 
-        _check_outputs(output, buffers, stats)
-        module = typed(self.module, self.parameters)
+        settings = self._reach(radius)
+        if rays is not None:
+            settings["rays"] = rays
+        wanted = [*DEFAULT_BUFFERS, "image"]
+        if self.buffer in BUFFERS and self.buffer not in wanted:
+            wanted.append(self.buffer)
         scene, notes = self._load()
-        reach: dict[str, Any] = {"like": module} if radius is None else {"radius": radius}
-        frame = reference(
-            scene,
-            size=self.size,
-            camera=self._camera(scene),
-            seed=self.seed,
-            rays=rays,
-            buffers=(*DEFAULT_BUFFERS, "image"),
-            **reach,
-        )
-        _write(frame, notes, output, buffers, stats)
+        frame = reference(scene, size=self.size, camera=self._camera(scene), seed=self.seed, buffers=wanted, **settings)
+        frame.notes = [*notes, *frame.notes]
         return frame
 
+    def _reach(self, radius: float | None) -> dict[str, Any]:
+        if self.module == REFERENCE:
+            return {**self._settings_of_a_reference(), **({} if radius is None else {"radius": radius})}
+        module: Module = find(self.module, MODULES, **self.parameters)
+        if radius is None:
+            return {"like": module}
+        return {"like": module.replace(radius=radius)} if hasattr(module, "radius") else {"radius": radius}
+
+    def _settings_of_a_reference(self) -> dict[str, Any]:
+        """The metadata's `parameters` of a ray-traced picture, as `aolab.reference` takes them."""
+        from ..truth import reference
+
+        known = signature(reference).parameters
+        types: dict[str, Any] = {
+            name: (one.annotation, one.default) for name, one in known.items() if name in self.parameters
+        }
+        checked = create_model("Settings", __config__={"extra": "forbid"}, **types)
+        try:
+            return checked(**self.parameters).model_dump()
+        except ValidationError as error:
+            raise FileError(f"the settings of the reference are damaged: {_first(error)}") from None
+
     def _load(self) -> tuple[Scene, list[str]]:
+        """The scene, and the notices about it, which are shown as well."""
         from ..loading import load
 
         with warnings.catch_warnings(record=True) as caught:
@@ -118,56 +132,39 @@ class Job:
     def _camera(self, scene: Scene) -> Camera:
         camera = self.camera or scene.camera
         assert camera is not None  # Scene frames itself
-        changes = {key: getattr(self, key) for key in ("eye", "target", "fov") if getattr(self, key) is not None}
-        if self.fov is not None:
-            changes["fit"] = False  # --fov is vertical in a picture of any shape
-        return replace(camera, **changes)
+        return replace(camera, **self.moved)
 
 
-def _check_outputs(output: Path, *others: Path | None) -> None:
-    if output.suffix.lower() != ".png":
-        raise FileError(f"cannot write {output}: images are written as .png")
-    paths = [path for path in (output, *others) if path is not None]
-    for path in paths:
-        check_writable(path)
-    if len({path.resolve() for path in paths}) < len(paths):
-        raise FileError(f"cannot write two things to one file: {', '.join(map(str, paths))}")
+def asked(scene: str | None, like: Path | None) -> Job:
+    """The job that repeats the picture `like`, or that renders `scene` with the usual settings.
+
+    Raises `ParameterError` without a scene, and `FileError` if the picture lacks its metadata.
+    """
+    job = like_picture(like) if like else Job()
+    if scene is not None:
+        if scene.lower().endswith(".png"):
+            raise ParameterError(f"{scene} is a picture, not a scene: to repeat it, write --like {scene}")
+        job.scene = scene
+    if job.scene is None:
+        reason = f"{like} shows a scene that was made in Python: name a scene" if like else "which scene? Name one"
+        raise ParameterError(f"{reason} (`aolab scenes` lists them), a model file, or --like FILE.png")
+    return job
 
 
-def _write(frame: Frame, notes: list[str], output: Path, buffers: Path | None, stats: Path | None) -> None:
-    frame.notes = [*notes, *frame.notes]
-    frame.save(output)
-    if buffers:
-        frame.save_buffers(buffers)
-    if stats:
-        with replacing(stats) as file:
-            file.write((json.dumps(frame.stats(), indent=2) + "\n").encode())
-
-
-def typed(name: str, parameters: dict[str, Any]) -> Module:
-    """The module with its parameters, text turned into their types."""
-    module = type(find(name, MODULES))
-    values = {}
-    for key, value in parameters.items():
-        if key in module.stated() and isinstance(value, str):
-            # the JSON reading of a word, where it has one: 16, 0.5, true; pydantic checks it after that
-            with suppress(json.JSONDecodeError):
-                value = json.loads(value)
-        values[key] = value
-    return module(**values)
-
-
-def parse_size(text: str) -> Size:
-    """'1280x720' as (1280, 720). Raises `ParameterError`."""
-    width, separator, height = text.lower().partition("x")
-    if not separator or not width.isdecimal() or not height.isdecimal():
-        raise ParameterError(f"size = '{text}' is not WIDTHxHEIGHT, as in 1280x720")
-    return int(width), int(height)
-
-
-def _vector(name: str, text: str) -> Vec3:
+def like_picture(picture: Path) -> Job:
+    """The job that made a picture. Raises `FileError` if its metadata is incomplete or wrong."""
+    info = read_png(picture)
+    needed = ("scene", "module", "parameters", "camera", "size", "seed")
+    if missing := [name for name in needed if name not in info]:
+        raise FileError(f"{picture}: its aolab metadata is incomplete: it lacks {', '.join(missing)}")
+    known = {one.name: info[one.name] for one in fields(Job) if one.name in info}
     try:
-        x, y, z = (float(part) for part in text.split(","))
-    except ValueError:
-        raise ParameterError(f"{name} {text} is not three numbers X,Y,Z") from None
-    return x, y, z
+        return TypeAdapter(Job).validate_python(known)
+    except ValidationError as error:
+        raise FileError(f"{picture}: its aolab metadata is damaged: {_first(error)}") from None
+
+
+def _first(error: ValidationError) -> str:
+    """The place and the message of the first mistake."""
+    first = error.errors()[0]
+    return f"{'.'.join(map(str, first['loc']))}: {first['msg']}"

@@ -1,4 +1,4 @@
-"""Results of many renders: rankings, benchmarks, curves, tuning."""
+"""Studies of many renders: rankings, benchmarks, curves of error against time, fitted parameters."""
 
 from .ranking import Entry, compare_modules, sheet
 

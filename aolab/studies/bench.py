@@ -1,11 +1,11 @@
-"""What things cost here: medians, with the interquartile range beside them and the renderer's name by every figure."""
+"""Times on this machine: medians with interquartile ranges, and the name of the renderer with every figure."""
 
 import os
 import statistics
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from time import perf_counter
 from typing import Any
@@ -18,56 +18,69 @@ from ..loading import load
 from ..modules import MODULES, SSAO, Module
 from ..modules.passes import Pass
 from ..pipeline.lab import Lab
+from ..progress import progress_bar
 from ..scene.scene import Scene
+from ..table import table as aligned
 
 SMALL = (640, 360)
 Result = dict[str, Any]
 
 
 def summary(values: Sequence[float]) -> dict[str, float]:
-    """Median and spread (interquartile range) of milliseconds."""
+    """The median of `values`, and their spread: the interquartile range."""
     low, middle, high = statistics.quantiles(values, n=4, method="inclusive")
     return {"median": middle, "spread": high - low}
 
 
 def frames(scene_name: str, size: Size, repeats: int) -> Result:
-    """Every module's passes and whole frame at `size`; Python's share at 640×360; SSAO against bare loops."""
+    """Milliseconds of every pass and of the whole frame, for every module at `size`.
+
+    Also the share of Python in a frame at 640×360, and SSAO against bare loops with as many taps.
+    """
     scene, lab = load(scene_name), Lab(size)
-    result: Result = {
+    modules = {}
+    with progress_bar("modules", len(MODULES) + 2) as bar:
+        for name, module in MODULES.items():
+            modules[name] = _module(lab, scene, module(), size, repeats)
+            bar.update()
+        share = _python_share(lab, scene, repeats)
+        bar.update()
+        against = _against_bare_loops(lab, scene, size, repeats)
+        bar.update()
+    return {
         "renderer": context.renderer(),
         "scene": scene_name,
         "size": list(size),
         "frames": repeats,
-        "modules": {name: _module(lab, scene, module(), size, repeats) for name, module in MODULES.items()},
-        "python_share": {"size": list(SMALL), "percent": _python_share(lab, scene, repeats)},
-        "ssao_16x1_against": _against_bare_loops(lab, scene, size, repeats),
+        "modules": modules,
+        "python_share": {"size": list(SMALL), "percent": share},
+        "ssao_16x1_against": against,
     }
-    return result
 
 
 def _module(lab: Lab, scene: Scene, module: Module, size: Size, repeats: int) -> Result:
-    lab.render(scene, module, size=size)  # compiles
+    lab.render(scene, module, size=size)  # compiles the shaders
     measured = [lab.render(scene, module, size=size) for _ in range(repeats)]
     passes = {name: summary([frame.timings[name] for frame in measured]) for name in measured[0].timings}
     return {"passes": passes, "frame": summary([frame.frame_ms for frame in measured])}
 
 
 def _python_share(lab: Lab, scene: Scene, repeats: int) -> dict[str, float]:
-    """The part of a steady frame in which no GL command was issued or waited for, in percent."""
+    """The share of a warm frame outside of all passes, in percent."""
     lab.render(scene, "ssao", size=SMALL)
     measured = [lab.render(scene, "ssao", size=SMALL) for _ in range(repeats)]
     return summary([100 * (1 - sum(frame.timings.values()) / frame.frame_ms) for frame in measured])
 
 
 def _against_bare_loops(lab: Lab, scene: Scene, size: Size, repeats: int) -> Result:
-    """The SSAO pass, 16 directions × 1 step, and two loops with as many taps, turn by turn in one run."""
+    """The SSAO pass with 16 directions × 1 step, and two loops with as many taps, frame by frame in turn."""
     module = SSAO(directions=16, steps=1, filter="none")
     candidates = {"ssao": module, **{name: _bare(name) for name in ("same_taps", "fixed_taps")}}
     times: dict[str, list[float]] = {name: [] for name in candidates}
     for turn in range(repeats + 1):
         for name, one in candidates.items():
             frame = lab.render(scene, one, size=size)
-            if turn:  # the first one compiles
+            if turn:  # the first frame compiles the shaders
                 times[name].append(frame.timings[one.name])
     ratios = {
         name: summary([ssao / bare for ssao, bare in zip(times["ssao"], times[name], strict=True)])
@@ -85,22 +98,25 @@ def _bare(shader: str) -> Module:
 
 
 def scaling(size: Size, repeats: int) -> Result:
-    """How the passes and the frame grow with pixels, taps and triangles: fitted exponents of a power law."""
+    """Growth of the passes' and the frame's time with pixels, taps and triangles: exponents of fitted power laws."""
     lab = Lab(size)
     boxes = load("boxes")
-    halves = [(max(1, size[0] // k), max(1, size[1] // k)) for k in (4, 3, 2, 1)]
-    by_pixels = {w * h: _costs(lab, boxes, SSAO(), (w, h), repeats) for w, h in halves}
-    by_taps = {n * 2: _costs(lab, boxes, SSAO(directions=n, steps=2), size, repeats) for n in (8, 16, 32, 64)}
     details = [load("atrium", detail=detail) for detail in (1, 2, 3, 4)]
-    by_triangles = {scene.triangles: _costs(lab, scene, SSAO(radius=0.5), size, repeats) for scene in details}
-    return {
-        "renderer": context.renderer(),
-        "size": list(size),
-        "frames": repeats,
-        "pixels": _fit(by_pixels),
-        "taps": _fit(by_taps),
-        "triangles": _fit(by_triangles),
+    shares = [(max(1, size[0] // k), max(1, size[1] // k)) for k in (4, 3, 2, 1)]
+    cases: dict[str, list[tuple[int, Scene, Module, Size]]] = {
+        "pixels": [(w * h, boxes, SSAO(), (w, h)) for w, h in shares],
+        "taps": [(n * 2, boxes, SSAO(directions=n, steps=2), size) for n in (8, 16, 32, 64)],
+        "triangles": [(scene.triangles, scene, SSAO(radius=0.5), size) for scene in details],
     }
+    result: Result = {"renderer": context.renderer(), "size": list(size), "frames": repeats}
+    with progress_bar("settings", sum(map(len, cases.values()))) as bar:
+        for name, settings in cases.items():
+            costs = {}
+            for count, scene, module, pixels in settings:
+                costs[count] = _costs(lab, scene, module, pixels, repeats)
+                bar.update()
+            result[name] = _fit(costs)
+    return result
 
 
 def _costs(lab: Lab, scene: Scene, module: Module, size: Size, repeats: int) -> dict[str, float]:
@@ -110,7 +126,7 @@ def _costs(lab: Lab, scene: Scene, module: Module, size: Size, repeats: int) -> 
 
 
 def _fit(costs: dict[int, dict[str, float]]) -> Result:
-    """milliseconds ≈ c · x^exponent, by least squares on the logarithms."""
+    """Exponents of milliseconds ≈ c · x^exponent, by least squares on the logarithms."""
     x = np.log(list(costs))
     names = next(iter(costs.values()))
     exponents = {
@@ -120,7 +136,7 @@ def _fit(costs: dict[int, dict[str, float]]) -> Result:
 
 
 def start_up(repeats: int) -> Result:
-    """Seconds to import aolab, and from process start to a saved picture, each in a fresh process."""
+    """Seconds to import aolab, and from process start to a saved picture, each time in a new process."""
     with tempfile.TemporaryDirectory() as folder:
         picture = str(Path(folder) / "out.png")
         render = ["-m", "aolab.shell.cli", "render", "boxes", "--size", "640x360", "-o", picture]
@@ -143,21 +159,45 @@ def _process(arguments: list[str], repeats: int) -> dict[str, float]:
 
 
 def table(result: Result) -> str:
-    """The result as lines to read."""
-    lines: list[str] = []
-    _rows(result, 0, lines.append)
-    return "\n".join(lines)
+    """The result of `frames`, `scaling` or `start_up` as lines of text, with the unit of every number."""
+    if "seconds" in result:
+        parts = [_summaries("seconds", result["seconds"])]
+    elif "exponents" in result.get("pixels", {}):
+        parts = [_scaling_table(name, result[name]) for name in ("pixels", "taps", "triangles")]
+    else:
+        parts = _frames_tables(result)
+    where = [f"renderer: {result['renderer']}"]
+    if "scene" in result:
+        where.append(f"scene: {result['scene']}")
+    if "size" in result:
+        width, height = result["size"]
+        where.append(f"{width}x{height}, medians of {result['frames']} frames; ± is the interquartile range")
+    return "\n\n".join(["\n".join(where), *parts])
 
 
-def _rows(value: Result, depth: int, emit: Callable[[str], None]) -> None:
-    indent = "  " * depth
-    for key, one in value.items():
-        if isinstance(one, dict) and set(one) == {"median", "spread"}:
-            emit(f"{indent}{key:<{34 - 2 * depth}}{one['median']:9.3f} ± {one['spread']:.3f}")
-        elif isinstance(one, dict):
-            emit(f"{indent}{key}")
-            _rows(one, depth + 1, emit)
-        elif isinstance(one, float):
-            emit(f"{indent}{key:<{34 - 2 * depth}}{one:9.3f}")
-        else:
-            emit(f"{indent}{key}: {one}")
+def _frames_tables(result: Result) -> list[str]:
+    rows = [
+        (name, step, cost["median"], cost["spread"])
+        for name, measured in result["modules"].items()
+        for step, cost in {**measured["passes"], "frame": measured["frame"]}.items()
+    ]
+    share, bare = result["python_share"], result["ssao_16x1_against"]
+    width, height = share["size"]
+    return [
+        aligned({"module": "", "pass": "", "milliseconds": ".3f", "±": ".3f"}, rows),
+        _summaries("percent", {f"share of Python in a frame of {width}x{height}": share["percent"]}),
+        _summaries("milliseconds", {f"{name}, 16 taps": cost for name, cost in bare["milliseconds"].items()}),
+        _summaries("ratio", {f"ssao / {name}": cost for name, cost in bare["ratio"].items()}),
+    ]
+
+
+def _scaling_table(what: str, found: Result) -> str:
+    """Milliseconds by the number of pixels, taps or triangles, and the fitted exponents in the last line."""
+    names = list(found["exponents"])
+    rows = [[f"{count}", *(cost[name] for name in names)] for count, cost in found["milliseconds"].items()]
+    rows.append(["exponent", *(found["exponents"][name] for name in names)])
+    return aligned({what: ">", **{f"{name}, ms": ".3f" for name in names}}, rows)
+
+
+def _summaries(unit: str, found: Mapping[str, Mapping[str, float]]) -> str:
+    return aligned({"": "", unit: ".3f", "±": ".3f"}, [(name, *cost.values()) for name, cost in found.items()])

@@ -1,16 +1,18 @@
-"""Error against time: the points of a measurement and their Pareto front."""
+"""Error against time: the measured points and their Pareto front."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from ..table import table
+
 
 @dataclass(frozen=True)
 class Point:
-    """One setting of a module: what it adds to a frame, and how it errs.
+    """A setting of a module, with its time and its error.
 
-    `milliseconds` is the median of the sum of the passes that the frame has because of the module, `spread` its
-    interquartile range, `passes` each one's median; `rmse` and `bias` are of visibility, over all pixels with a
-    surface. `front`: nothing else measured is at least as fast and at least as good.
+    `milliseconds` is the time of the passes that a frame has because of the module: the median of their sum. `spread`
+    is its interquartile range, and `passes` has the median of each pass. `rmse` and `bias` are those of visibility over
+    all pixels with a surface. `front`: no other measured point is at least as fast and at least as good.
     """
 
     module: str
@@ -25,7 +27,7 @@ class Point:
 
     @property
     def label(self) -> str:
-        """'ssao 16×2 box4', and 'at 0.5' behind it for a scale below 1."""
+        """'ssao 16×2 box4', followed by 'at 0.5' for a scale below 1."""
         rest = dict(self.settings)
         taps = "×".join(str(rest.pop(key)) for key in ("directions", "steps") if key in rest)
         scale = rest.pop("scale", 1)
@@ -35,7 +37,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Curve:
-    """All points; `info` says where and how they were measured, `noise` is the RMS of the truth's standard error."""
+    """All points. `info` has the conditions of the measurement; `noise` is the RMS of the truth's standard error."""
 
     points: tuple[Point, ...]
     info: dict[str, Any]
@@ -43,7 +45,7 @@ class Curve:
 
     @property
     def front(self) -> list[Point]:
-        """The Pareto front, fastest first: each of its points errs less than all that are faster."""
+        """The Pareto front, fastest first: each point has less error than all faster points."""
         return sorted((point for point in self.points if point.front), key=lambda point: point.milliseconds)
 
     @property
@@ -53,17 +55,18 @@ class Curve:
 
     @property
     def place(self) -> str:
-        """Renderer, machine, and how often each time was taken."""
+        """Renderer, machine and number of frames."""
         return "{renderer}; {machine}; medians of {frames} frames".format(**self.info)
 
     def to_dict(self) -> dict[str, Any]:
-        """For JSON."""
+        """Plain values for JSON."""
         return {**self.info, "truth_standard_error": self.noise, "points": [asdict(point) for point in self.points]}
 
     def table(self) -> str:
-        """The front, and the defaults beside it, as lines to read."""
-        lines = [self.title, self.place, f"{'':<40}{'ms':>9}{'±':>8}{'rmse':>9}{'bias':>9}"]
+        """The Pareto front, then the other modules' defaults, as lines of text."""
+        rows = []
         for one in [*self.front, *(point for point in self.points if point.default and not point.front)]:
-            about = one.label + (", default" if one.default else "") + ("" if one.front else ", not on the front")
-            lines.append(f"{about:<40}{one.milliseconds:9.2f}{one.spread:8.2f}{one.rmse:9.4f}{one.bias:+9.4f}")
-        return "\n".join(lines)
+            label = one.label + (", default" if one.default else "") + ("" if one.front else ", not on the front")
+            rows.append((label, one.milliseconds, one.spread, one.rmse, one.bias))
+        columns = {"": "", "ms": ".2f", "±": ".2f", "rmse": ".4f", "bias": "+.4f"}
+        return "\n".join([self.title, self.place, table(columns, rows)])

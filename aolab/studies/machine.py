@@ -1,4 +1,4 @@
-"""The machine, in words: figures of time mean nothing without it."""
+"""A description of the machine, which belongs to every figure of time."""
 
 import os
 import platform
@@ -12,7 +12,7 @@ def describe() -> str:
 
 
 def _processor() -> str:
-    """Its name; the platform module does not know it on Linux."""
+    """The name of the processor; on Linux, the module `platform` does not return it."""
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()
     except OSError:

@@ -1,4 +1,4 @@
-"""More cameras than a scene has: its own, and others that look at the same point from the side."""
+"""Cameras for a scene: its own camera, and cameras beside it that look at the same point."""
 
 import warnings
 from dataclasses import replace
@@ -11,9 +11,9 @@ from ..pipeline.lab import Lab
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 
-STEP = 15.0  # degrees: enough for other surfaces to hide and to be seen, with the same objects still in the picture
-CLEARANCE = 0.5  # of the distance to what the scene's own camera has nearest: no pillar or curtain before the lens
-LEAST = 2.0  # degrees; less is no other view
+STEP = 15.0  # degrees: other surfaces are hidden and seen, and the same objects are still in the picture
+CLEARANCE = 0.5  # share of the distance from the scene's own camera to its nearest surface: no pillar before the lens
+LEAST = 2.0  # degrees; a smaller angle gives nearly the same view
 
 
 def turned(camera: Camera, degrees: float) -> Camera:
@@ -28,13 +28,14 @@ def turned(camera: Camera, degrees: float) -> Camera:
 def cameras(scene: Scene, count: int, lab: Lab, size: Size) -> dict[float, Camera]:
     """{degrees: camera}: the scene's own, at 0, and turned by 15, -15, 30, -30, ... degrees, `count` in all.
 
-    An angle is halved until nothing stands nearer to the eye than half of what the scene's own camera has nearest, and
-    something is seen; below 2 degrees, or where the angle is taken, the camera is left out, with a `Notice`.
+    An angle is halved until the picture shows a surface, and the nearest surface is at least half as far as from the
+    scene's own camera. Below 2 degrees, or if the angle is used already, the camera is left out with a `Notice`.
+    Raises `ParameterError` if `count` is not a whole number from 1 on.
     """
     if not isinstance(count, int) or count < 1:
         raise ParameterError(f"views = {count!r} is not a whole number from 1 on")
     own = scene.camera
-    assert own is not None  # Scene frames itself
+    assert own is not None  # every scene has a camera
     nearest = _nearest(scene, own, lab, size)
     found = {0.0: own}
     for index in range(1, count):
@@ -52,5 +53,5 @@ def cameras(scene: Scene, count: int, lab: Lab, size: Size) -> dict[float, Camer
 
 
 def _nearest(scene: Scene, camera: Camera, lab: Lab, size: Size) -> float:
-    """Distance along the view axis to the nearest surface in the picture; infinite where there is none."""
+    """Distance along the view axis to the nearest surface in the picture; infinite if there is none."""
     return float(-lab.render(scene, "none", camera=camera, size=size)["viewZ"].max())

@@ -1,7 +1,7 @@
-"""Error against milliseconds: every module over a range of its settings, and the settings that nothing beats.
+"""Error against time: every module over a range of its settings, and the settings that no other setting beats.
 
-All modules have one radius. Each is held against rays of that radius and its own falloff; a module that has no radius,
-against those of SSAO.
+All modules have the same radius. A module is compared with rays of this radius and of the module's own falloff, a
+module without a radius with the rays for SSAO.
 """
 
 import statistics
@@ -22,6 +22,7 @@ from ..modules import MODULES, SSAO, Module, find
 from ..modules.parameters import AUTO, label
 from ..pipeline.frame import Frame
 from ..pipeline.lab import Lab
+from ..progress import progress_bar
 from ..scene.scene import Scene
 from ..truth import reference
 from ..version import __version__
@@ -29,7 +30,7 @@ from . import machine
 from .bench import summary
 from .curve import Curve, Point
 
-# What trades time for error: numbers by factors of their default, a filter by each of its kinds.
+# Parameters that trade time for error: numbers are multiplied by factors, of a filter all kinds are tried.
 FACTORS = {"directions": (0.25, 0.5, 1, 2), "steps": (0.5, 1, 2), "scale": (0.5, 1)}
 KINDS = ("filter",)
 
@@ -44,25 +45,29 @@ def curve(
     frames: int = 5,
     seed: int = 0,
 ) -> Curve:
-    """Measure `modules` (all by default), each over its `settings`; times are medians over warm `frames`.
+    """Measure `modules` (default: all), each over its `settings`; times are medians over warm `frames`.
 
-    Raises `ParameterError` for fewer than 2 frames, and what `aolab.render` and `aolab.reference` raise.
+    Raises `ParameterError` for fewer than 2 frames, and the exceptions of `aolab.render` and `aolab.reference`.
     """
     if not isinstance(frames, int) or frames < 2:
         raise ParameterError(f"frames = {frames!r}: a median with its spread needs 2 or more")
     scene, lab = load(scene), Lab(size)
     judge = SSAO(radius=radius).resolved(scene)
-    # passes of every frame; the first one of this lab has the shadow maps among them
+    # the passes that every frame has; this is the first frame of the lab, so that the shadow maps are among them
     shared = lab.render(scene, "none", filter="none").timings.keys() - {"none"}
 
+    grids = [(module, settings(module)) for module in _chosen(modules, judge, scene)]
     variants, noise = [], 0.0
-    for module in _chosen(modules, judge, scene):
-        like = module if hasattr(module, "radius") else judge
-        truth = reference(scene, size=size, rays=rays, like=like, seed=seed, buffers=("visibility", "standard_error"))
-        for one, varied in settings(module):
-            error = visibility_error(lab.render(scene, one, seed=seed), truth)  # compiles, too
-            variants.append((one, varied, one == module, error))
-        noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
+    with progress_bar("errors", sum(len(grid) for _, grid in grids), " settings") as bar:
+        for module, grid in grids:
+            like = module if module.occlusion_radius is not None else judge
+            wanted = ("visibility", "standard_error")
+            truth = reference(scene, size=size, rays=rays, like=like, seed=seed, buffers=wanted)
+            for one, varied in grid:
+                error = visibility_error(lab.render(scene, one, seed=seed), truth)  # also compiles the shaders
+                variants.append((one, varied, one == module, error))
+                bar.update()
+            noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
 
     times = _times(lab, scene, [variant[0] for variant in variants], frames, shared)
     points = [
@@ -85,10 +90,10 @@ def curve(
 
 
 def settings(module: Module) -> list[tuple[Module, dict[str, Any]]]:
-    """The module over the grid of those of `FACTORS` and `KINDS` that it has, itself among them, and what was varied.
+    """The variants of `module`, itself among them, each with the values that were varied.
 
-    What falls outside of a parameter's range is left out. A module without parameters of its own has nothing to trade
-    time with: it is one point.
+    The variants are the grid over the parameters in `FACTORS` and `KINDS`. Values out of a parameter's range are left
+    out. A module without parameters of its own is a single point, since it cannot trade time for error.
     """
     fields = type(module).model_fields
     if fields.keys() <= Module.model_fields.keys():
@@ -112,7 +117,7 @@ def _times_factor(value: float, factor: float) -> float:
 
 
 def pareto_front(costs: Sequence[tuple[float, float]]) -> set[int]:
-    """Indices of the (milliseconds, error) than which no other is at least as good in both; of equals, the first."""
+    """Indices of the pairs (milliseconds, error) that no other pair equals or beats in both; of equals, the first."""
     front, best = set(), float("inf")
     for index in sorted(range(len(costs)), key=costs.__getitem__):
         if costs[index][1] < best:
@@ -122,20 +127,23 @@ def pareto_front(costs: Sequence[tuple[float, float]]) -> set[int]:
 
 
 def visibility_error(frame: Frame, truth: Frame) -> dict[str, float]:
-    """RMSE, bias and the other `differences` of visibility, over the pixels with a surface. Raises `ParameterError`."""
+    """RMSE, bias and the other `differences` of visibility, over the pixels with a surface.
+
+    Raises `ParameterError` if no pixel shows a surface.
+    """
     mask = truth.mask
     if not mask.any():
-        raise ParameterError("there is nothing to measure: no pixel of this view shows a surface")
+        raise ParameterError("visibility cannot be compared: no pixel of this view shows a surface")
     return differences(frame["visibility"][mask] - truth["visibility"][mask])
 
 
 def _chosen(modules: Iterable[str | Module | type[Module]] | None, judge: SSAO, scene: Scene) -> list[Module]:
-    """The modules with the judge's radius, those that give visibility."""
+    """The modules that have the buffer `visibility`, with the radius of `judge`."""
     chosen = []
     for module in (find(one, MODULES) for one in (modules or MODULES)):
         if "visibility" not in {*module.outputs, *module.derived}:
             given = ", ".join(module.outputs)
-            warnings.warn(f"{label(type(module))} is left out: it gives {given}, no visibility", Notice, stacklevel=3)
+            warnings.warn(f"{label(type(module))} is left out: it has {given}, no visibility", Notice, stacklevel=3)
         elif hasattr(module, "radius"):
             chosen.append(module.replace(radius=judge.radius))
         else:
@@ -146,12 +154,14 @@ def _chosen(modules: Iterable[str | Module | type[Module]] | None, judge: SSAO, 
 def _times(
     lab: Lab, scene: Scene, modules: list[Module], frames: int, shared: set[str]
 ) -> list[list[dict[str, float]]]:
-    """{own pass: milliseconds} by module and frame; turn by turn, so that a slower minute is everybody's."""
+    """{own pass: milliseconds} by module and frame. The modules take turns, so that a slow minute affects them all."""
     times: list[list[dict[str, float]]] = [[] for _ in modules]
-    for _ in range(frames):
-        for module, known in zip(modules, times, strict=True):
-            timings = lab.render(scene, module).timings
-            known.append({name: milliseconds for name, milliseconds in timings.items() if name not in shared})
+    with progress_bar("times", frames * len(modules), " frames") as bar:
+        for _ in range(frames):
+            for module, known in zip(modules, times, strict=True):
+                timings = lab.render(scene, module).timings
+                known.append({name: milliseconds for name, milliseconds in timings.items() if name not in shared})
+                bar.update()
     return times
 
 

@@ -1,18 +1,19 @@
-"""The picture of a quality curve: error against milliseconds, one colour a module, the Pareto front numbered."""
+"""The picture of a curve: error against milliseconds, a colour for each module, the Pareto front numbered."""
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, StrMethodFormatter
 
+from ..table import table
 from .curve import Curve
 
-# Okabe and Ito 2008, distinguishable by all kinds of colour vision, yellow left out: it vanishes on white
+# Okabe and Ito 2008, distinct for all kinds of colour vision; without their yellow, which is faint on white
 COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
 MARKERS = ("o", "s", "^", "D", "v", "P", "X")
 
 
 def draw(curve: Curve) -> Figure:
-    """Both axes logarithmic. Stars are the modules' defaults; a dotted line, if in reach, is the truth's own error."""
+    """Draw the curve on logarithmic axes. Stars are defaults; a dotted line is the truth's standard error."""
     figure = Figure((12.5, 6.2), dpi=110, facecolor="white")
     axes = figure.add_axes((0.065, 0.125, 0.59, 0.79))
     names = list(dict.fromkeys(point.module for point in curve.points))
@@ -30,7 +31,7 @@ def draw(curve: Curve) -> Figure:
     axes.set(
         xscale="log", yscale="log", xlabel="milliseconds that the module adds to a frame", ylabel="RMSE of visibility"
     )
-    if curve.noise > axes.get_ylim()[0]:  # else it is far below, and the foot of the picture says how far
+    if curve.noise > axes.get_ylim()[0]:  # else it is far below; the foot of the picture has the number
         axes.axhline(curve.noise, color="0.4", linestyle=":", linewidth=1, label="the truth's standard error")
     for axis in (axes.xaxis, axes.yaxis):
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -48,7 +49,7 @@ def draw(curve: Curve) -> Figure:
 
 
 def _front(axes: Axes, curve: Curve) -> None:
-    """The front as a stair - what one must pay at least for an error - its points numbered, the numbers listed."""
+    """The front as a staircase, the least time for an error; its points are numbered, and the list explains them."""
     front = curve.front
     x, y = [point.milliseconds for point in front], [point.rmse for point in front]
     axes.plot(x, y, drawstyle="steps-post", color="black", linewidth=1.2, zorder=2, label="Pareto front")
@@ -64,12 +65,9 @@ def _front(axes: Axes, curve: Curve) -> None:
             weight="bold",
             zorder=5,
         )
-    width = max(len(point.label) for point in front)
-    lines = [f"{'':<{width + 4}}{'ms':>7}{'RMSE':>8}"]
-    lines += [
-        f"{number:>2}  {point.label:<{width}}{point.milliseconds:7.2f}{point.rmse:8.4f}{' *' if point.default else ''}"
+    rows = [
+        (number, point.label, point.milliseconds, point.rmse, "*" if point.default else "")
         for number, point in enumerate(front, 1)
     ]
-    axes.text(
-        1.03, 1, "\n".join(lines), transform=axes.transAxes, va="top", family="monospace", fontsize=8, linespacing=1.4
-    )
+    listed = table({" ": "d", "": "", "ms": ".2f", "RMSE": ".4f", "  ": ""}, rows)
+    axes.text(1.03, 1, listed, transform=axes.transAxes, va="top", family="monospace", fontsize=8, linespacing=1.4)

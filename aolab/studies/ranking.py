@@ -1,4 +1,4 @@
-"""Modules against the truth, sorted by error: what `aolab compare` shows."""
+"""Modules compared with the truth and sorted by error: the study behind `aolab compare`."""
 
 import statistics
 from collections.abc import Iterable, Sequence
@@ -8,25 +8,29 @@ from typing import Any
 from PIL import Image
 
 from ..errors import ParameterError
+from ..extras import need
 from ..gl.texture import Size
 from ..loading import load
 from ..measures.comparison import Comparison, compare
 from ..modules import MODULES, Module, find
 from ..pipeline.api import shared_lab
+from ..progress import progress_bar
 from ..scene.camera import Camera
 from ..scene.scene import Scene
+from ..table import table
 from ..truth import reference
 
 DEFAULT_SIZE = (480, 270)
-REPEATS = 3  # warm frames, of which the median is told
+REPEATS = 3  # warm frames; the time of a frame is their median
+Modules = str | Module | type[Module] | Iterable[str | Module | type[Module]]
 _ON_SHEET = ("rmse", "bias", "p99", "psnr", "ssim", "flip", "angle")
 
 
 @dataclass(frozen=True, eq=False)
 class Entry:
-    """One module's line: its name with the parameters that differ from its defaults, how it did, and what it cost.
+    """The result of a module. `label` is its name with the parameters that differ from the defaults.
 
-    `milliseconds` is a whole frame, the median of warm ones; the time of software rendering depends on the machine.
+    `milliseconds` is the time of a whole frame, the median of warm frames on this machine.
     """
 
     label: str
@@ -49,7 +53,7 @@ class Entry:
 
 def compare_modules(
     scene: Any,
-    modules: Iterable[str | Module | type[Module]] | None = None,
+    modules: Modules | None = None,
     *,
     size: Size = DEFAULT_SIZE,
     camera: Camera | None = None,
@@ -60,41 +64,43 @@ def compare_modules(
     accumulate: int = 1,
     flip: bool = True,
 ) -> list[Entry]:
-    """Render `scene` with each of `modules` (default: all), compare `buffer` with the truth, sort by RMSE, best first.
+    """Render `scene` with each of `modules` (default: all), compare `buffer` with the truth, and sort by RMSE.
 
-    Each module is held against a reference of its own radius and falloff; one that has no radius against that of the
-    first one that has. `radius` (scene units) sets them all. Raises what `aolab.render` and `aolab.reference` raise.
+    The least error comes first. A module is compared with a reference of its own radius and falloff, a module without a
+    radius with the reference of the first module that has one. `radius` (scene units) replaces all radii. `flip=False`
+    leaves out the slowest measure.
+    Raises `ParameterError`, before any ray is traced, if a module lacks the buffer or a library is missing, and the
+    exceptions of `aolab.render` and `aolab.reference`.
     """
+    if flip:
+        need("flip", ", or flip=False (--no-flip in the shell)")
     scene = load(scene)
-    entries = []
-    for module, like in with_their_truth(scene, modules or MODULES, radius):
-        truth = reference(
-            scene,
-            size=size,
-            camera=camera,
-            rays=rays,
-            buffers=(buffer,),
-            seed=seed,
-            like=like,
-            radius=None if like else radius,
-        )
-        settings = {"camera": camera, "size": size, "seed": seed, "accumulate": accumulate}
-        frame = shared_lab().render(scene, module, **settings)
+    view: dict[str, Any] = {"size": size, "camera": camera, "seed": seed}
+    pairs = with_their_truth(scene, modules or MODULES, radius)
+    for module, _ in pairs:
+        frame = shared_lab().render(scene, module, **view)
         if buffer not in frame.buffers:
-            raise ParameterError(f"module {module.name} gives no '{buffer}'; it has {', '.join(frame.buffers)}")
-        comparison = compare(frame, truth, buffer, flip=flip)
-        again = [shared_lab().render(scene, module, **settings).frame_ms for _ in range(REPEATS)]
-        info = {"scene": scene.source or scene.name, "rays": rays, "renderer": frame.info["renderer"]}
-        entries.append(Entry(label(module, scene), module, comparison, statistics.median(again), info))
+            raise ParameterError(f"module {module.name} has no '{buffer}'; it has {', '.join(frame.buffers)}")
+    entries = []
+    with progress_bar("modules", len(pairs)) as bar:
+        for module, like in pairs:
+            reach = {"like": like} if like else {"radius": radius}
+            truth = reference(scene, **view, rays=rays, buffers=(buffer,), **reach)  # type: ignore[arg-type]
+            frame = shared_lab().render(scene, module, **view, accumulate=accumulate)
+            comparison = compare(frame, truth, buffer, flip=flip)
+            again = [shared_lab().render(scene, module, **view, accumulate=accumulate).frame_ms for _ in range(REPEATS)]
+            info = {"scene": scene.source or scene.name, "rays": rays, "renderer": frame.info["renderer"]}
+            entries.append(Entry(label(module, scene), module, comparison, statistics.median(again), info))
+            bar.update()
     return sorted(entries, key=lambda entry: entry.comparison[buffer].rmse)
 
 
 def sheet(entries: Sequence[Entry], *, limit: float | None = None) -> Image.Image:
-    """A line an entry: result, truth, error, numbers, milliseconds; in the order given, all with one scale of error."""
+    """A row for each entry, in this order: result, truth, error and numbers. All rows have one scale of error."""
     from ..measures.pictures import Line, draw
 
     if not entries:
-        raise ParameterError("a sheet of no modules: name at least one")
+        raise ParameterError("a sheet of no modules: give at least one entry")
     lines = [Line(_only(entry), entry.label, _text(entry)) for entry in entries]
     first = entries[0]
     width, height = first.comparison.regions["all"].shape[::-1]
@@ -105,16 +111,15 @@ def sheet(entries: Sequence[Entry], *, limit: float | None = None) -> Image.Imag
     return draw(lines, title, limit=limit)
 
 
-def with_their_truth(
-    scene: Scene, modules: Iterable[str | Module | type[Module]], radius: float | None = None
-) -> list[tuple[Module, Module | None]]:
-    """The modules, resolved, with `radius` if given; each with the one that says the truth's radius and falloff.
+def with_their_truth(scene: Scene, modules: Modules, radius: float | None = None) -> list[tuple[Module, Module | None]]:
+    """Pairs of a module, resolved and with `radius` if given, and of the module whose reference it is compared with.
 
-    That is itself, or, of one that has no radius, the first that has.
+    The second is the first itself, or, if it has no radius, the first module of all that has; None if none has.
     """
+    modules = [modules] if isinstance(modules, (str, Module, type)) else modules
     chosen = [_with_radius(find(one, MODULES), radius).resolved(scene) for one in modules]
-    first = next((module for module in chosen if hasattr(module, "radius")), None)
-    return [(module, module if hasattr(module, "radius") else first) for module in chosen]
+    first = next((module for module in chosen if module.occlusion_radius is not None), None)
+    return [(module, module if module.occlusion_radius is not None else first) for module in chosen]
 
 
 def _with_radius(module: Module, radius: float | None) -> Module:
@@ -124,7 +129,7 @@ def _with_radius(module: Module, radius: float | None) -> Module:
 
 
 def label(module: Module, scene: Scene) -> str:
-    """Name and parameters that are not the defaults."""
+    """The name of a module, and its parameters that differ from the defaults."""
     defaults = type(module)().resolved(scene).model_dump()
     changed = [f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}"
                for key, value in module.model_dump().items() if value != defaults.get(key)]  # fmt: skip
@@ -138,12 +143,12 @@ def _only(entry: Entry):
 def _text(entry: Entry) -> str:
     """The numbers beside the pictures."""
     one = _only(entry)
-    lines = [f"{name:<12}{getattr(one, name):>9.4g}" for name in _ON_SHEET if getattr(one, name) == getattr(one, name)]
-    where = [
-        f"{region:<12}{measures.rmse:>9.4g}"
-        for region, measures in one.measures.items()
-        if region != "all" and measures.pixels
+    rows: list[tuple[str, float | str]] = [
+        (name, getattr(one, name)) for name in _ON_SHEET if getattr(one, name) == getattr(one, name)
     ]
+    regions = [(name, where.rmse) for name, where in one.measures.items() if name != "all" and where.pixels]
+    rows += [("", ""), ("rmse at", ""), *regions]
     if isinstance(radius := getattr(entry.module, "radius", None), float):
-        where += ["", f"{'radius':<12}{radius:>9.4g}"]
-    return "\n".join([*lines, "", "rmse at", *where, f"{'frame':<12}{entry.milliseconds:>9.1f} ms"])
+        rows += [("", ""), ("radius", radius)]
+    rows.append(("frame, ms", f"{entry.milliseconds:.1f}"))
+    return table({"": "", " ": ".4g"}, rows).lstrip("\n")

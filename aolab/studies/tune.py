@@ -1,15 +1,18 @@
-"""Fair presets: a module's parameters fitted to the truth on some scenes, and judged on others.
+"""Parameters of a module, fitted to the truth on some scenes and tested on other scenes.
 
-The way XeGTAO (Intel 2021) found its constants. Every module gets the same chance: the same scenes and cameras, the
-same search, as many trials a parameter.
+XeGTAO (Intel 2021) found its constants this way. The search is fair to all modules: the same scenes and cameras, the
+same algorithm, and the same number of trials for each parameter.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import fmean
 from typing import Any
 
-from ..errors import Error, ParameterError
+import numpy as np
+
+from ..errors import ParameterError
+from ..extras import need
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
@@ -17,24 +20,25 @@ from ..modules import MODULES, Module, find
 from ..modules.parameters import label
 from ..pipeline.frame import Frame
 from ..pipeline.lab import Lab
+from ..progress import progress_bar
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 from ..truth import reference
 from ..version import __version__
-from . import nearby_cameras as orbit
+from .nearby_cameras import cameras
 from .quality import visibility_error
 from .search_space import Axis, axis, tunable
 from .tuning import Row, Tuning
 
 TRAINING = ("boxes", "colonnade", "toasters")
 HELD_OUT = ("cornell", "atrium", "skyscrapers")
-TRIALS = 25  # a parameter
-IMMATERIAL = 1e-3  # share of the error: what gains less is put back, since the search wanders where nothing matters
+TRIALS = 25  # for each parameter
+IMMATERIAL = 1e-3  # share of the error: a change that gains less is undone, since the search wanders at random there
 
 
 @dataclass(frozen=True)
 class _View:
-    """One picture to be matched."""
+    """A picture that is matched."""
 
     scene: Scene
     turn: float
@@ -55,35 +59,41 @@ def tune(
     seed: int = 0,
     progress: bool | None = None,
 ) -> Tuning:
-    """Fit `parameters` (all of the module's own numbers by default) to the least mean RMSE of visibility.
+    """Fit `parameters` (default: all numbers of the module's own) to the least mean RMSE of visibility.
 
-    The mean is over all `scenes`, each from its own camera and others (`orbit.cameras`), `views` in all; `test_scenes`
-    only judge; by default they are `TRAINING` and `HELD_OUT`. Radius and falloff are the truth's, too, and stay; so
-    does what costs time (`search_space`). The first trial is the module as given, so that the result is never worse
-    where it was fitted; the others are the choice of a tree-structured Parzen estimator (Bergstra et al. 2011), seeded.
-    In the end a change that gains less than 0.1 % is put back. `trials`: 25 a parameter by default.
-    Raises `ParameterError`, `Error` without Optuna, and what `aolab.render` and `aolab.reference` raise.
+    The mean is over all `scenes`, each seen by its own camera and by cameras beside it (`nearby_cameras`), `views` in
+    all. `test_scenes` are only tested. The defaults are `TRAINING` and `HELD_OUT`. Parameters that the truth shares or
+    that cost time stay (`search_space`), and so do parameters that have no effect on visibility in these scenes.
+    The first trial is the module as given, so that the result is never worse on the scenes of the fit. The other trials
+    come from a tree-structured Parzen estimator (Bergstra et al. 2011) with `seed`. In the end, a change that gains
+    less than 0.1 % is undone. `trials`: 25 for each parameter by default.
+    Raises `ParameterError`, also without Optuna, and the exceptions of `aolab.render` and `aolab.reference`.
     """
     module = find(module, MODULES)
     names = tunable(module) if parameters is None else list(dict.fromkeys(parameters))
-    if not names:
-        raise ParameterError(f"{label(type(module))} has no number of its own to tune; name one in `parameters`")
     axes = [axis(module, name) for name in names]
-    trials = TRIALS * len(axes) if trials is None else trials
-    if not isinstance(trials, int) or trials < 1:
+    if trials is not None and (not isinstance(trials, int) or trials < 1):
         raise ParameterError(f"trials = {trials!r} is not a whole number from 1 on")
     if "visibility" not in {*module.outputs, *module.derived}:
-        raise ParameterError(f"{label(type(module))} gives no visibility; it gives {', '.join(module.outputs)}")
-    optuna = _optuna()
+        raise ParameterError(f"{label(type(module))} has no visibility; it has {', '.join(module.outputs)}")
+    optuna = need("tune")
     training = [load(one) for one in (TRAINING if scenes is None else scenes)]
     held_out = [load(one) for one in (HELD_OUT if test_scenes is None else test_scenes)]
     _check(training, held_out)
+    # visibility does not depend on lights, and shadow maps cost time
+    training, held_out = ([scene.replace(lights=()) for scene in group] for group in (training, held_out))
 
     lab = Lab(size)
+    idle = {one.name for one in axes if not _matters(lab, module, one, training)}
+    if idle and parameters is not None:
+        raise ParameterError(f"visibility does not depend on {', '.join(sorted(idle))} in these scenes")
+    axes = [one for one in axes if one.name not in idle]
+    if not axes:
+        raise ParameterError(f"{label(type(module))} has no number of its own to tune; name one in `parameters`")
+    trials = TRIALS * len(axes) if trials is None else trials
     to_match, to_judge = (
-        [view for scene in group for view in _views(scene, module, lab, views, size, rays, progress)]
-        for group in (training, held_out)
-    )
+        _views(group, module, lab, views, size, rays, progress) for group in (training, held_out)
+    )  # fmt: skip
     tuned = _search(optuna, module, axes, to_match, lab, trials, seed, progress)
     rows = [
         _row(lab, module, tuned, view, held_out)
@@ -99,15 +109,18 @@ def tune(
         "seed": seed,
         "ranges": {one.name: list(one.choices) or [one.low, one.high] for one in axes},
     }
-    return Tuning(module, tuned, tuple(names), tuple(rows), info)
+    return Tuning(module, tuned, tuple(one.name for one in axes), tuple(rows), info)
 
 
-def _optuna() -> Any:
-    try:
-        import optuna
-    except ImportError as error:
-        raise Error(f"tuning needs Optuna: pip install optuna ({error})") from error
-    return optuna
+def _matters(lab: Lab, module: Module, one: Axis, scenes: list[Scene]) -> bool:
+    """Whether visibility in any of the scenes changes over the range of a parameter."""
+    values = one.choices or (one.start, one.low, one.high)
+    variants = [module.replace(**{one.name: value}) for value in values]
+    for scene in scenes:
+        first, *others = (lab.render(scene, variant)["visibility"] for variant in variants)
+        if any(not np.array_equal(first, other, equal_nan=True) for other in others):
+            return True
+    return False
 
 
 def _check(training: list[Scene], held_out: list[Scene]) -> None:
@@ -116,7 +129,7 @@ def _check(training: list[Scene], held_out: list[Scene]) -> None:
             raise ParameterError(f"{what} is empty: name at least one scene")
     known = {scene.source or id(scene) for scene in training}
     if both := [_name(scene) for scene in held_out if (scene.source or id(scene)) in known]:
-        raise ParameterError(f"{', '.join(both)}: to be fitted to and to judge; a scene can be one of both only")
+        raise ParameterError(f"{', '.join(both)}: a scene is either for the fit or for the test, not for both")
 
 
 def _name(scene: Scene) -> str:
@@ -124,14 +137,19 @@ def _name(scene: Scene) -> str:
 
 
 def _views(
-    scene: Scene, module: Module, lab: Lab, count: int, size: Size, rays: int, progress: bool | None
-) -> Iterator[_View]:
-    dark = scene.replace(lights=())  # visibility knows no lights, and shadow maps cost time
-    for turn, camera in orbit.cameras(dark, count, lab, size).items():
-        truth = reference(
-            dark, size=size, camera=camera, rays=rays, like=module, buffers=("visibility",), progress=progress
-        )
-        yield _View(dark, turn, camera, truth)
+    scenes: list[Scene], module: Module, lab: Lab, count: int, size: Size, rays: int, shown: bool | None
+) -> list[_View]:
+    """Every scene from `count` cameras, with the ray-traced truth."""
+    views = []
+    with progress_bar("views", len(scenes) * count, shown=shown) as bar:
+        for scene in scenes:
+            for turn, camera in cameras(scene, count, lab, size).items():
+                truth = reference(
+                    scene, size=size, camera=camera, rays=rays, like=module, buffers=("visibility",), progress=shown
+                )
+                views.append(_View(scene, turn, camera, truth))
+                bar.update()
+    return views
 
 
 def _error(lab: Lab, module: Module, view: _View) -> dict[str, float]:
@@ -146,25 +164,26 @@ def _search(
     lab: Lab,
     trials: int,
     seed: int,
-    progress: bool | None,
+    shown: bool | None,
 ) -> Module:
-    """The module with the least mean RMSE over `views`; what does not matter for that stays as it was."""
-    from tqdm import tqdm
+    """The module with the least mean RMSE over `views`; a parameter that does not reduce it stays as it was."""
 
     def score(tried: Any) -> float:
         return fmean(_error(lab, tried, view)["rmse"] for view in views)
 
-    optuna.logging.set_verbosity(optuna.logging.WARNING)  # a line a trial is not for a library to print
+    optuna.logging.set_verbosity(optuna.logging.WARNING)  # by default it logs a line for each trial
     study = optuna.create_study(sampler=optuna.samplers.TPESampler(seed=seed))
     study.enqueue_trial({one.name: one.start for one in axes})
     best, least = module, float("inf")
-    for _ in tqdm(range(trials), desc="trials", disable=None if progress is None else not progress):
-        trial = study.ask()
-        tried = module.replace(**{one.name: one.suggest(trial) for one in axes})
-        error = score(tried)
-        study.tell(trial, error)
-        if error < least:
-            best, least = tried, error  # type: ignore[assignment]
+    with progress_bar("trials", trials, shown=shown) as bar:
+        for _ in range(trials):
+            trial = study.ask()
+            tried = module.replace(**{one.name: one.suggest(trial) for one in axes})
+            error = score(tried)
+            study.tell(trial, error)
+            if error < least:
+                best, least = tried, error  # type: ignore[assignment]
+            bar.update()
 
     enough = least * (1 + IMMATERIAL)
     if score(module) <= enough:

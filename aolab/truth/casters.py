@@ -9,6 +9,7 @@ from typing import Literal, NamedTuple, Protocol, get_args
 import numpy as np
 
 from ..errors import ParameterError, suggestion
+from ..extras import missing
 
 Engine = Literal["auto", "embree", "numpy"]
 NUMPY_LIMIT = 20_000  # triangles; at about 1e8 ray-triangle tests a second this is already 5000 rays a second
@@ -107,7 +108,7 @@ class NumpyCaster:
 
 
 def caster(engine: Engine, triangles: np.ndarray) -> Caster:
-    """The caster by name; `auto` is Embree where it is installed, else NumPy. Raises `ParameterError`."""
+    """The caster by name; `auto` is Embree. Raises `ParameterError`, also without Embree."""
     if engine not in get_args(Engine):
         raise ParameterError(f"engine = {engine!r} is unknown{suggestion(str(engine), get_args(Engine))}")
     if engine == "numpy":
@@ -115,9 +116,7 @@ def caster(engine: Engine, triangles: np.ndarray) -> Caster:
     try:
         return EmbreeCaster(triangles)
     except ImportError as error:
-        if engine == "embree":
-            raise ParameterError(f"engine = 'embree' needs embreex: pip install embreex ({error})") from error
-        return NumpyCaster(triangles)
+        raise missing("embree", error, ", or engine='numpy', which is slow and for tiny scenes") from error
 
 
 def _limits(limit: np.ndarray | float, origins: np.ndarray) -> np.ndarray:

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import Error, ParameterError, suggestion
+from ..extras import install_command
 from ..loading import load
 from ..pipeline.api import shared_lab
 from ..pipeline.frame import Frame
@@ -109,7 +110,7 @@ def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, ti
     if not timeout > 0:
         raise ParameterError(f"timeout = {timeout!r} is not a number of seconds above 0")
     if importlib.util.find_spec("mitsuba") is None:
-        raise ParameterError("engine = 'mitsuba' needs Mitsuba 3: pip install mitsuba (the extra 'mitsuba')")
+        raise ParameterError("engine = 'mitsuba' needs Mitsuba 3: " + install_command("mitsuba"))
     return [name for name in BUFFERS if name in wanted]
 
 

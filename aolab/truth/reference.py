@@ -11,8 +11,7 @@ from ..errors import ParameterError, suggestion
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
-from ..modules import MODULES, Module
-from ..modules.base import find
+from ..modules import MODULES, Module, find
 from ..pipeline.api import shared_lab
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera

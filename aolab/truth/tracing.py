@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ..progress import progress_bar
 from .buffers import BUFFERS
 from .integrals import Setting, integrate
 from .lighting import irradiance
@@ -56,10 +57,6 @@ def _cores() -> int:
 
 @contextmanager
 def _bar(total: int, progress: bool | None) -> Iterator[Callable[[int], object]]:
-    """A function that advances a bar on standard error, which is shown if `progress`, or for None on a terminal."""
-    from tqdm import tqdm
-
-    with tqdm(
-        total=total, desc="reference", unit="px", unit_scale=True, disable=None if progress is None else not progress
-    ) as bar:
+    """A function that advances a `progress_bar`, which is shown as `progress` demands."""
+    with progress_bar("reference", total, "px", shown=progress, unit_scale=True) as bar:
         yield bar.update

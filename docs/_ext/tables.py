@@ -11,7 +11,7 @@ from sphinx.util.docutils import SphinxDirective
 from aolab.loading import describe_scene, scene_names
 from aolab.modules import MODULES, Module, known_buffers
 from aolab.modules.parameters import describe
-from aolab.shell.cli import app as shell
+from aolab.shell.app import app as shell
 
 HELP_COLUMNS = 84  # the width of a code block on a page, without scrolling
 
@@ -106,8 +106,8 @@ class ShellHelp(Markdown):
     """`aolab --help`, and the help of every command."""
 
     def text(self) -> str:
-        group = typer.main.get_group(shell)  # a click command with its subcommands
-        pages = [f"## {name}\n\n{_help(command, f'aolab {name}')}" for name, command in group.commands.items()]
+        group: Any = typer.main.get_command(shell)  # with the options for completion
+        pages = [f"### {name}\n\n{_help(command, f'aolab {name}')}" for name, command in group.commands.items()]
         return "\n\n".join([_help(group, "aolab"), *pages])
 
 

@@ -185,3 +185,35 @@ def test_a_shader_file_of_ones_own_is_found_in_the_glsl_folder(shaders, boxes):
         shader = "mine.frag"
 
     assert np.nanmax(aolab.Lab((8, 8)).render(boxes, Mine())["visibility"]) == 0.5
+
+
+def test_a_wrong_declaration_is_a_parameter_error():
+    with pytest.raises(
+        ParameterError, match=r"class Untyped: parameter 'level' has no type; write level: float = \.\.\."
+    ):
+
+        class Untyped(aolab.Module):
+            level = aolab.parameter(0.5, "The visibility.")
+
+    with pytest.raises(ParameterError, match="class Strange: Unable to generate"):
+
+        class Strange(aolab.Module):
+            level: np.ndarray = aolab.parameter(0.5, "An array.")
+
+    class Undefined(aolab.Module):
+        level: "Unknown" = 0.5  # noqa: F821  # pyright: ignore[reportUndefinedVariable]
+
+    with pytest.raises(ParameterError, match=r"class Undefined: .*you should define `Unknown`"):
+        Undefined()
+
+
+@pytest.mark.parametrize("size", [np.array([16, 9]), [np.int64(16), 9]])
+def test_a_size_may_be_an_array(size):
+    assert aolab.render("boxes", size=size).size == (16, 9)
+    assert aolab.reference("boxes", size=size, rays=2, buffers="visibility").size == (16, 9)
+
+
+@pytest.mark.parametrize("size", [np.array([16.5, 9]), np.zeros((2, 2)), (), 0, "16x9", (16, 9, 3)])
+def test_a_wrong_size_is_a_parameter_error(size):
+    with pytest.raises(ParameterError, match="is not two whole numbers"):
+        aolab.render("boxes", size=size)

@@ -1,11 +1,16 @@
-"""`aolab doctor`: what can render here, and the remedy where nothing can."""
+"""`aolab doctor`: the findings on this machine, and the remedies if nothing can be rendered."""
 
 import json
+import runpy
+import sys
+from pathlib import Path
 
 import pytest
 
+from aolab.extras import EXTRAS, install_command
 from aolab.gl import context
 from aolab.shell import doctor
+from aolab.shell import remedies as remedies_of_both
 
 DOCTOR = "import sys; sys.argv = ['aolab', 'doctor', *{!r}]; from aolab.shell.cli import main; main()"
 NO_DRIVER = {"__EGL_VENDOR_LIBRARY_DIRS": "/nowhere", "__EGL_VENDOR_LIBRARY_FILENAMES": "/nowhere/none.json"}
@@ -36,11 +41,11 @@ def test_the_shell_prints_json_and_ends_with_0(python):
     ("broken", "remedy"),
     [
         ({"MESA_GL_VERSION_OVERRIDE": "2.1"}, "MESA_GL_VERSION_OVERRIDE is 2.1; it must be 3.3 or more, or unset"),
-        ({"AOLAB_DEVICE": "99"}, "unset AOLAB_DEVICE (now 99) to let aolab choose"),
-        (NO_DRIVER, "sudo apt install libegl1 libgl1 libgl1-mesa-dri"),
+        ({"AOLAB_DEVICE": "99"}, "unset AOLAB_DEVICE (now 99): then aolab chooses the device"),
+        (NO_DRIVER, "sudo apt-get install libegl1 libgl1 libgl1-mesa-dri"),
     ],
 )
-def test_where_nothing_can_render_it_names_the_remedy_and_ends_with_1(python, gl, broken, remedy):
+def test_if_nothing_can_be_rendered_the_remedy_is_named_and_the_exit_code_is_1(python, gl, broken, remedy):
     if "MESA_GL_VERSION_OVERRIDE" in broken and "Mesa" not in gl.info["GL_VERSION"]:
         pytest.skip("only Mesa can pretend to be older")
     done = python(DOCTOR.format(["--json"]), **broken)
@@ -53,21 +58,36 @@ def test_where_nothing_can_render_it_names_the_remedy_and_ends_with_1(python, gl
     assert "Traceback" not in done.stderr
 
 
-def test_for_people_it_says_the_same(python):
+def test_the_text_has_the_same_findings(python):
     done = python(DOCTOR.format([]), **NO_DRIVER)
     assert done.returncode == 1
     assert "renders: False" in done.stdout
-    assert "sudo apt install libegl1" in done.stdout
+    assert "sudo apt-get install libegl1" in done.stdout
 
 
-def test_a_picture_that_is_wrong_is_no_rendering(gl, monkeypatch):
+def test_a_wrong_picture_is_no_rendering(gl, monkeypatch):
     monkeypatch.setattr(doctor, "_draw_one_pixel", lambda gl: b"\0\0\0\xff")
     findings = doctor.examine()
     assert findings["renders"] is False
     assert findings["remedies"] == ["the driver drew 000000ff in place of ff8000ff: update it"]
 
 
-def test_extras_that_are_missing_come_with_the_way_to_get_them(gl, monkeypatch):
-    monkeypatch.setattr(doctor.importlib.util, "find_spec", lambda name: None)
-    extras = doctor.examine()["extras"]
-    assert all(text.startswith("missing: ") and "pip install" in text for text in extras.values())
+def test_missing_extras_are_listed_with_the_command_that_installs_them(gl, monkeypatch):
+    monkeypatch.setattr("aolab.extras.is_installed", lambda name: name == "flip")
+    findings = doctor.examine()["extras"]
+    assert findings.pop("flip") == "found"
+    assert list(findings) == [name for name in EXTRAS if name != "flip"]
+    for name, text in findings.items():
+        assert text == f"missing: {EXTRAS[name].purpose}; {install_command(EXTRAS[name].package)}"
+
+
+def test_the_way_without_root_is_the_set_ups(monkeypatch):
+    """`tools/setup.py` and the doctor print the same lines."""
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setattr("shutil.which", lambda name: None)
+    setup = runpy.run_path(str(Path(__file__).parents[2] / "tools/setup.py"), run_name="setup")
+    explained = setup["explain"](["libegl1"])
+    remedies = "\n".join(doctor._remedies())
+    for line in remedies_of_both.CONDA:
+        assert line in explained
+        assert line in remedies

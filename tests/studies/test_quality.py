@@ -1,19 +1,12 @@
 """Error against milliseconds: which settings are measured, what counts as time and as error, what is written."""
 
-import json
-import sys
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
-from PIL import Image
 
 import aolab
-from aolab.errors import Error, FileError, Notice, ParameterError
-from aolab.modules import MODULES
-from aolab.shell.cli import app
-from aolab.shell.quality import quality_command
+from aolab.errors import Notice, ParameterError
 from aolab.studies.curve import Curve
 from aolab.studies.quality import curve, pareto_front, settings, visibility_error
 from aolab.truth import reference
@@ -142,7 +135,7 @@ def test_module_without_visibility_is_left_out_and_said(boxes: aolab.Scene):
         def passes(self) -> list[aolab.Pass]:
             return [aolab.Pass("colour", self.shader, self.outputs, writes={"visibility": "colour"})]
 
-    with pytest.warns(Notice, match="colour is left out: it gives colour, no visibility"):
+    with pytest.warns(Notice, match="colour is left out: it has colour, no visibility"):
         measured = curve(boxes, [Colour, "none"], **FEW)
     assert [point.module for point in measured.points] == ["none"]
 
@@ -158,38 +151,3 @@ def test_curve_of_few_frames_or_of_nothing_is_refused(boxes: aolab.Scene):
 def test_visibility_error_of_equal_frames_is_zero(boxes: aolab.Scene):
     truth = reference(boxes, size=SIZE, rays=8, like="ssao", buffers=("visibility",))
     assert visibility_error(truth, truth)["maximum"] == 0
-
-
-@pytest.mark.slow
-@pytest.mark.usefixtures("short_grid")
-def test_command_writes_picture_and_data_beside_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    small = "x".join(map(str, SIZE))
-    output = tmp_path / "curve.png"
-    app(["bench", "--quality", "boxes", "--size", small, "--rays", "8", "--frames", "3", "-o", str(output)],
-        standalone_mode=False)  # fmt: skip
-    printed = capsys.readouterr().out
-    with Image.open(output) as picture:
-        assert picture.width > 1000
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["curve.json", "curve.png"]
-    data = json.loads((tmp_path / "curve.json").read_text())
-    assert {"renderer", "machine", "radius", "rays", "truth_standard_error"} <= set(data)
-    assert (data["scene"], data["size"], data["frames"]) == ("boxes", list(SIZE), 3)
-    assert {point["module"] for point in data["points"]} == set(MODULES)
-    assert len(data["points"]) == sum(len(settings(module())) for module in MODULES.values())
-    for text in (data["renderer"], data["machine"], "ssao 8 box4, default"):
-        assert text in printed
-
-
-def test_command_refuses_before_the_work(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
-    monkeypatch.setattr("aolab.shell.quality.curve", lambda *_, **__: pytest.fail("measured before it was refused"))
-    with pytest.raises(FileError, match=r"curve\.svg: the picture is written as \.png"):
-        quality_command("boxes", tmp_path / "curve.svg")
-    with pytest.raises(FileError, match="does not exist"):
-        quality_command("boxes", tmp_path / "nowhere" / "curve.png")
-    (tmp_path / "curve.json").mkdir()
-    with pytest.raises(FileError, match=r"curve\.json: it is a folder"):
-        quality_command("boxes", tmp_path / "curve.png")
-    monkeypatch.delitem(sys.modules, "aolab.studies.quality_picture", raising=False)
-    monkeypatch.setitem(sys.modules, "matplotlib.figure", None)
-    with pytest.raises(Error, match="pip install matplotlib"):
-        quality_command("boxes", tmp_path / "other.png")

@@ -1,12 +1,11 @@
-"""Modules against the truth: the order, the meaning of the truth, the sheet, the command."""
+"""Modules compared with the truth: the order, the radius of the truth, the sheet."""
 
-import json
+import sys
 
 import numpy as np
 import pytest
 
 import aolab
-from aolab.shell.compare import compare_command, parse_module
 from aolab.studies import compare_modules, ranking, sheet
 
 SMALL = {"size": (64, 48), "rays": 16, "flip": False}
@@ -56,39 +55,27 @@ def test_a_sheet_has_a_line_a_module(entries):
 
 def test_text_beside_the_pictures(entries):
     text = ranking._text(entries[0])
-    for word in ("rmse", "bias", "ssim", "silhouettes", "radius            0.4", "ms"):
-        assert word in text
+    lines = [line.split() for line in text.splitlines()]
+    assert ["radius", "0.4"] in lines
+    assert [line[0] for line in lines if line][:6] == ["rmse", "bias", "p99", "psnr", "ssim", "rmse"]
+    assert lines[-1][:2] == ["frame,", "ms"]
     assert "flip" not in text  # was not asked for
 
 
 def test_a_buffer_that_a_module_lacks_is_an_error(boxes):
-    with pytest.raises(aolab.ParameterError, match="module none gives no 'bent_normal'; it has albedo"):
+    with pytest.raises(aolab.ParameterError, match="module none has no 'bent_normal'; it has albedo"):
         compare_modules(boxes, ["none"], buffer="bent_normal", **SMALL)
 
 
-def test_command_writes_the_sheet_and_prints(tmp_path):
-    path = tmp_path / "sheet.png"
-    options = {"scene": "boxes", "modules": "none,ssao?steps=3", "size": "48x32", "rays": 4, "radius": None}
-    text = compare_command(**options, buffer="visibility", output=path, as_json=False)
-    assert path.read_bytes().startswith(b"\x89PNG")
-    assert [line.split()[0] for line in text.splitlines()[1:]] == ["ssao", "none"]
-    read = json.loads(compare_command(**options, buffer="ambient", output=None, as_json=True))
-    assert {entry["label"] for entry in read} == {"ssao steps=3", "none"}
-    assert all(entry["buffers"]["ambient"]["all"]["rmse"] > 0 for entry in read)
-    assert all(entry["rays"] == 4 and entry["renderer"] for entry in read)
+def test_one_module_may_stand_alone(boxes):
+    (entry,) = compare_modules(boxes, "ssao", **SMALL)
+    assert entry.label == "ssao"
 
 
-def test_command_refuses_before_the_work(tmp_path):
-    options = {"scene": "boxes", "modules": None, "size": "48x32", "rays": 4, "radius": None, "buffer": "visibility"}
-    with pytest.raises(aolab.FileError, match=r"sheet.jpg: the sheet is written as .png"):
-        compare_command(**options, output=tmp_path / "sheet.jpg", as_json=False)
-    with pytest.raises(aolab.FileError, match="does not exist"):
-        compare_command(**options, output=tmp_path / "nowhere" / "sheet.png", as_json=False)
-
-
-def test_modules_are_written_as_scenes_are():
-    assert parse_module(" ssao?directions=32&radius=0.5") == aolab.SSAO(directions=32, radius=0.5)
-    with pytest.raises(aolab.ParameterError, match="write NAME"):
-        parse_module("ssao?directions")
-    with pytest.raises(aolab.ParameterError, match="did you mean 'ssao'"):
-        parse_module("sao")
+def test_a_comparison_without_its_buffer_or_library_is_refused_before_rays_are_traced(boxes, monkeypatch):
+    monkeypatch.setattr(ranking, "reference", lambda *_, **__: pytest.fail("traced before it was refused"))
+    with pytest.raises(aolab.ParameterError, match="module ssao has no 'bent_normal'"):
+        compare_modules(boxes, ["ssbn", "ssao"], buffer="bent_normal", **SMALL)
+    monkeypatch.setitem(sys.modules, "flip_evaluator", None)
+    with pytest.raises(aolab.ParameterError, match=r"pip install flip-evaluator, or flip=False \(--no-flip"):
+        compare_modules(boxes, ["ssao"], **{**SMALL, "flip": True})

@@ -1,17 +1,15 @@
-"""Tuning: what may be varied and how far, from which cameras, and that the preset is what was measured."""
+"""Tuning: the parameters and ranges of the search, the cameras, and the preset."""
 
 import json
 import sys
 import warnings
-from pathlib import Path
 
 import numpy as np
 import pytest
 import small_scenes
 
 import aolab
-from aolab.errors import Error, Notice, ParameterError
-from aolab.shell.cli import app
+from aolab.errors import Notice, ParameterError
 from aolab.studies.nearby_cameras import cameras, turned
 from aolab.studies.search_space import Axis, axis, tunable
 from aolab.studies.tune import Tuning, tune
@@ -48,14 +46,24 @@ def test_first_trial_is_the_module_as_given(boxes: aolab.Scene, ball: aolab.Scen
     assert one.rows[0].rmse == one.rows[0].tuned_rmse
 
 
-def test_parameter_that_does_not_matter_stays_as_it_was(boxes: aolab.Scene, ball: aolab.Scene):
+def test_parameter_without_effect_is_not_searched(boxes: aolab.Scene, ball: aolab.Scene):
     class Idle(aolab.SSAO):
         idle: float = aolab.parameter(0.5, "Has no effect.", ge=0, le=1)
 
     start = Idle(radius=1.0, thickness=0.03)
-    one = tune(start, ["idle", "thickness"], scenes=[boxes], test_scenes=[ball], trials=8, **{**FEW, "views": 1})
-    assert one.tuned == start.replace(thickness=one.preset["thickness"])
-    assert one.preset["thickness"] > 0.03
+    few = {"scenes": [boxes], "test_scenes": [ball], "trials": 8, **FEW, "views": 1}
+    one = tune(start, **few)  # pyright: ignore[reportArgumentType]
+    assert one.parameters == ("bias", "thickness", "power")
+    with pytest.raises(ParameterError, match="visibility does not depend on idle in these scenes"):
+        tune(start, ["idle", "thickness"], **few)  # pyright: ignore[reportArgumentType]
+
+
+def test_parameters_of_light_are_not_searched(boxes: aolab.Scene, ball: aolab.Scene):
+    """Bounces, senders and lights change the picture, but not visibility."""
+    few = {"scenes": [boxes], "test_scenes": [ball], "trials": 1, **FEW, "views": 1}
+    assert tune("ssdo", **few).parameters == ("bias", "thickness")  # pyright: ignore[reportArgumentType]
+    with pytest.raises(ParameterError, match="visibility does not depend on bounces"):
+        tune("ssdo", ["bounces"], **few)  # pyright: ignore[reportArgumentType]
 
 
 def test_same_seed_same_preset(tuned: Tuning, boxes: aolab.Scene, ball: aolab.Scene):
@@ -76,7 +84,7 @@ def test_preset_makes_the_module_that_was_measured(tuned: Tuning, boxes: aolab.S
     assert own_view.tuned_rmse == pytest.approx(error, rel=1e-4)
 
 
-def test_report_says_when_held_out_scenes_get_worse(tuned: Tuning):
+def test_report_warns_if_held_out_scenes_get_worse(tuned: Tuning):
     warning = "On the held-out scenes this preset is worse"
     for factor in (0.5, 2.0):
         rows = [row for row in tuned.rows if not row.held_out]
@@ -90,6 +98,7 @@ def test_report_says_when_held_out_scenes_get_worse(tuned: Tuning):
 def test_ranges_come_from_the_parameters_statements():
     assert tunable(aolab.SSAO()) == ["bias", "thickness", "power"]
     assert tunable(aolab.Unoccluded()) == []
+    assert not {"bounces", "senders", "directions"} & set(tunable(aolab.SSDO()))
     assert axis(aolab.SSAO(), "thickness") == Axis("thickness", 0.9, 0.9 / 30, 10, log=True)
     assert axis(aolab.SSAO(bias=0.0), "bias") == Axis("bias", 0.0, 0, 1)
     assert axis(aolab.SSAO(), "filter").choices == ("none", "box4", "bilateral")
@@ -104,27 +113,27 @@ def test_ranges_come_from_the_parameters_statements():
     assert axis(Own(), "lobes") == Axis("lobes", 4, 1, 8, whole=True)
     assert axis(Own(), "wide") == Axis("wide", 4, 1, 120, log=True, whole=True)
     assert axis(Own(), "soft").choices == (False, True)
-    with pytest.raises(ParameterError, match=r"endless has no range to search from 0\.0; state its ge and le"):
+    with pytest.raises(ParameterError, match=r"endless = 0\.0 has no range to search; declare its ge and le"):
         axis(Own(), "endless")
-    with pytest.raises(ParameterError, match="word = 'a' is neither a number nor one of a few"):
+    with pytest.raises(ParameterError, match="word = 'a' cannot be tuned: it is neither a number nor a choice"):
         axis(Own(), "word")
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"parameters": ["radius"]}, "radius is not to be tuned: the truth has the same one"),
-        ({"parameters": ["steps"]}, "steps is not to be tuned: it trades time for error"),
+        ({"parameters": ["radius"]}, "radius cannot be tuned: the truth has the same radius"),
+        ({"parameters": ["steps"]}, "steps cannot be tuned: it trades time for error"),
         ({"parameters": ["thicknes"]}, "no parameter 'thicknes'; did you mean 'thickness'"),
         ({"module": "none"}, "none has no number of its own to tune"),
         ({"trials": 0}, "trials = 0 is not a whole number from 1 on"),
         ({"scenes": []}, "scenes is empty"),
         ({"test_scenes": []}, "test_scenes is empty"),
-        ({"test_scenes": ["boxes"]}, "boxes: to be fitted to and to judge"),
+        ({"test_scenes": ["boxes"]}, "boxes: a scene is either for the fit or for the test"),
         ({"views": 0}, "views = 0 is not a whole number"),
     ],
 )
-def test_what_makes_no_sense_is_refused(arguments: dict, message: str):
+def test_an_impossible_search_is_refused(arguments: dict, message: str):
     usual = {"module": "ssao", "scenes": ["boxes"], "test_scenes": ["cornell"], "size": SIZE, "rays": 8}
     with pytest.raises(ParameterError, match=message):
         tune(**{**usual, **arguments})
@@ -132,7 +141,7 @@ def test_what_makes_no_sense_is_refused(arguments: dict, message: str):
 
 def test_without_optuna_the_error_names_the_extra(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "optuna", None)
-    with pytest.raises(Error, match="tuning needs Optuna: pip install optuna"):
+    with pytest.raises(ParameterError, match=r"fitting parameters needs optuna: .*pip install optuna"):
         tune("ssao")
 
 
@@ -164,16 +173,3 @@ def test_camera_that_finds_no_free_place_is_left_out_and_said(lab: aolab.Lab):
     scene = small_scenes.of(small_scenes.floor(), small_scenes.sphere(1.0, (0, 1, 0)), pillar, camera=camera)
     with pytest.warns(Notice, match="no free view near 30 degrees"):
         assert list(cameras(scene, 4, lab, SIZE)) == [0, 15, -15]
-
-
-def test_command_writes_a_preset_that_render_takes(tmp_path: Path, capsys: pytest.CaptureFixture[str]):
-    output = tmp_path / "preset.json"
-    app(["tune", "ssao", "--parameters", "thickness,bias", "--set", "steps=3", "--scenes", "boxes", "--test-scenes",
-         "cornell", "--trials", "3", "--views", "1", "--size", "64x36", "--rays", "8", "--json", "-o", str(output)],
-        standalone_mode=False)  # fmt: skip
-    report, preset = json.loads(capsys.readouterr().out), json.loads(output.read_text())
-    assert report["preset"] == preset
-    assert set(preset) == {"steps", "thickness", "bias"}
-    assert report["training"]["tuned_rmse"] <= report["training"]["rmse"]
-    assert [(view["scene"], view["held_out"]) for view in report["views"]] == [("boxes", False), ("cornell", True)]
-    assert aolab.SSAO(**preset).steps == 3

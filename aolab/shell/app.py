@@ -1,0 +1,44 @@
+"""The commands of the shell: one file each. A file imports what its command needs when the command runs."""
+
+from typing import Annotated
+
+import typer
+
+from ..version import __version__
+from .bench import bench
+from .compare import compare
+from .doctor import doctor
+from .modules import modules
+from .reference import reference
+from .render import render
+from .reproduce import reproduce
+from .scenes import scenes
+from .tune import tune
+
+COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, reproduce)
+
+app = typer.Typer(
+    name="aolab",
+    help="A laboratory for ambient lighting in image space.",
+    epilog="`aolab COMMAND --help` describes a command. `--debug` shows the traceback of an error.",
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+def _print_version(asked: bool) -> None:
+    if asked:
+        print(f"aolab {__version__}")
+        raise typer.Exit()
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+    ] = False,
+) -> None: ...
+
+
+for command in COMMANDS:
+    app.command()(command)
