@@ -53,6 +53,8 @@ def or_bits() -> Iterator[None]:
         yield
     finally:
         gl.disable_direct(_COLOR_LOGIC_OP)
+
+
 def mirror(texture: moderngl.Texture, axis: int) -> None:
     """Let the texture go on mirrored along an axis, 0 for u and 1 for v."""
     texture.use(0)

@@ -6,7 +6,7 @@ import small_scenes
 
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Instance, Material, Mesh, PointLight, Scene, SpotLight, Texture
-from aolab.pipeline.shadows import FINE
+from aolab.pipeline.shadows import TILE_SIZES
 from aolab.scene.lights import Light
 
 DARK = Environment.constant(0.0)
@@ -230,7 +230,7 @@ def test_a_shadows_edge_is_a_ramp_over_two_and_a_half_texels(lab):
     edge = 0.0031  # off a texel's border
     roof = small_scenes.box((-4, 1, -4), (edge, 1.2, 4))
     scene = floor_under(DirectionalLight((0, -1, 0)), more=[roof])
-    texel = 2 * scene.radius / FINE
+    texel = 2 * scene.radius / TILE_SIZES[4]
     away = 0.4 * np.sqrt(2)
     # 8 texels across, seen from under the roof's edge
     camera = Camera((edge + 0.4, 0.4, 0), (edge, 0, 0), up=(0, 0, -1), fov=np.degrees(8 * texel / away))
