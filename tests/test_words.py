@@ -22,7 +22,6 @@ SKIPPED = ("_build", "generated")
 BOUND = {
     ".": 3,
     "aolab/gl": 3,
-    "aolab/loading": 11,
     "aolab/measures": 15,
     "aolab/modules": 15,
     "aolab/papers": 2,
@@ -30,7 +29,6 @@ BOUND = {
     "aolab/papers/ssdo": 5,
     "aolab/pipeline": 18,
     "aolab/pipeline/occluders": 4,
-    "aolab/scene": 3,
     "aolab/truth": 14,
     "docs": 52,
     "docs/modules": 23,
@@ -40,7 +38,6 @@ BOUND = {
     "glsl/pipeline": 3,
     "tests": 7,
     "tests/gl": 9,
-    "tests/loading": 2,
     "tests/measures": 11,
     "tests/modules": 16,
     "tests/papers": 5,

@@ -42,7 +42,7 @@ def scenes() -> Listing:
 
 
 def describe_scene(name: str) -> SceneDescription:
-    """What `aolab scenes` shows. Raises `FileError` for an unknown scene."""
+    """The description that `aolab scenes` prints. Raises `FileError` for an unknown scene."""
     function = _function(name)
     document = str(function.__globals__["__doc__"] or inspect.getdoc(function) or "")
     defaults = {key: parameter.default for key, parameter in _signature(function).items()}

@@ -21,7 +21,7 @@ FAR = 100.0
 
 
 class Notes:
-    """What a reader repaired, left out or did not use, collected into few notices."""
+    """The repairs, the parts left out and the properties not used by a reader, collected into few notices."""
 
     def __init__(self) -> None:
         self._kinds: dict[tuple[str, str, str], list[str]] = {}

@@ -45,7 +45,7 @@ def scene_from_trimesh(source: Any) -> Scene:
 
 def _part(geometry: Any, name: str, textures: dict[int, Texture], content: Content) -> Part:
     vertices, faces = np.asarray(geometry.vertices), np.asarray(geometry.faces)
-    # asking for `vertex_normals` would make some; only the cache tells which were given
+    # trimesh computes `vertex_normals` when they are read: only normals in its cache were given
     normals = geometry.vertex_normals if "vertex_normals" in geometry._cache else None
     visual, uv, colors, material = geometry.visual, None, None, None
     if visual.kind == "texture":

@@ -48,8 +48,8 @@ ON_DEMAND = _table(
     Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
 )
 
-# made from an estimate by the lighting and the composition. Radiance has single precision: half floats end at 65504, and
-# a surface near a lamp may be brighter
+# made from an estimate by the lighting and the composition. Radiance has single precision: half floats end at 65504,
+# and a surface near a lamp may be brighter
 LIT = _table(
     Buffer("direct", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The light of the lamps that the surface reflects."),
     Buffer("ambient", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The environment's light that the surface reflects."),

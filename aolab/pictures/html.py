@@ -4,9 +4,12 @@ import base64
 from collections.abc import Iterable, Mapping, Sequence
 from html import escape as escape
 from io import BytesIO
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 WIDEST = 480  # pixels: the width of pictures in tabs
 CELL = "text-align: left; padding: 2px 10px; vertical-align: top"
@@ -27,21 +30,25 @@ class Listing(dict[str, str]):
         return table((self.head, ""), self.items())
 
 
-def png(picture: Image.Image | np.ndarray) -> bytes:
+def png(picture: "Image.Image | np.ndarray") -> bytes:
     """The bytes of a PNG file. `picture`: an image, or pixels (H, W, 3) uint8."""
+    from PIL import Image  # here: scenes are listed without pictures
+
     data = BytesIO()
     (picture if isinstance(picture, Image.Image) else Image.fromarray(picture)).save(data, "PNG")
     return data.getvalue()
 
 
-def smaller(picture: Image.Image, width: int = WIDEST) -> Image.Image:
+def smaller(picture: "Image.Image", width: int = WIDEST) -> "Image.Image":
     """The picture, reduced to `width` pixels if it is wider."""
+    from PIL import Image
+
     if picture.width <= width:
         return picture
     return picture.resize((width, round(picture.height * width / picture.width)), Image.Resampling.LANCZOS)
 
 
-def img(picture: Image.Image | np.ndarray, alt: str, style: str = "max-width: 100%") -> str:
+def img(picture: "Image.Image | np.ndarray", alt: str, style: str = "max-width: 100%") -> str:
     """An <img> with the picture in it, as PNG."""
     data = base64.b64encode(png(picture)).decode()
     return f'<img alt="{escape(alt)}" style="{style}" src="data:image/png;base64,{data}">'

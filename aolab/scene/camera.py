@@ -125,6 +125,6 @@ class Camera:
         probe = cls(eye=tuple(towards), target=(0, 0, 0), fov=fov)
         corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T - centre
         x, y, z = probe.view_from_world[:3, :3] @ corners.T
-        # each corner asks for a distance at which it falls inside the frame, 5 % away from its edge
+        # the distance at which each corner falls inside the frame, 5 % away from its edge
         distance = float((z + np.maximum(np.abs(x), np.abs(y)) * 1.05 / np.tan(np.radians(fov) / 2)).max())
         return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov, fit=True)

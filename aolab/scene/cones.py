@@ -1,4 +1,4 @@
-"""The environment's mean radiance in cones: what bent normals look up (Klehm et al. 2011, "pre-convolved" maps)."""
+"""The environment's mean radiance in cones: bent normals look it up (Klehm et al. 2011, "pre-convolved" maps)."""
 
 from dataclasses import dataclass
 

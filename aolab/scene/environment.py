@@ -11,7 +11,6 @@ import numpy as np
 from ..errors import Notice, SceneError
 from ..input import Budget
 from ..maths.harmonics import evaluate, irradiance, project
-from ..pictures import display
 from .camera import Vec3
 
 HALF_MAX = 65504.0  # the largest finite float16 (IEEE 754 binary16), which HDR files and textures hold
@@ -64,6 +63,8 @@ class Environment:
         return f"<Environment '{self.name}': {width}x{height}, radiance up to {self.radiance.max():.3g}>"
 
     def _repr_png_(self) -> bytes:
+        from ..pictures import display
+
         return display.environment_png(self.radiance)
 
     def _repair(self, radiance: np.ndarray) -> None:

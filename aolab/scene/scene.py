@@ -9,7 +9,6 @@ import numpy as np
 
 from ..errors import Notice, SceneError
 from ..maths.local_maxima import AXES, mean_nearest_distance
-from ..pictures import display
 from .camera import Camera
 from .environment import Environment
 from .lights import DirectionalLight, Light
@@ -65,7 +64,7 @@ def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """What is drawn. A missing camera frames the scene; without lights and environment there is a default sky and sun.
+    """Placed meshes, lights, an environment and a camera. A missing camera frames the scene; without lights and environment there is a default sky and sun.
 
     `source` is what `aolab.load` was given, where that was a name or a file; it makes an image reproducible.
     """
@@ -192,6 +191,7 @@ class Scene:
     def _repr_html_(self) -> str:
         """A small render, and a table of the meshes."""
         from .. import render  # a render needs the folders above this one; the package's face provides it
+        from ..pictures import display
 
         return display.scene_html(self, render(self, "ssao", size=display.PREVIEW).image)
 

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-# words that only a Python programmer knows, and the last resort of `loading.files`
+# words of Python programmers, and the last resort of `loading.files`
 PYTHON = re.compile(
     r"Traceback|\w+Error\b|\w+Exception\b|object at 0x|NoneType|ndarray|numpy|pydantic|<class|not subscriptable|"
     r"could not convert|invalid literal|unpack|out of range for|out of bounds|broadcast|dtype|charset|codec can't|"
@@ -275,7 +275,7 @@ KINDS: dict[str, Callable[[random.Random], dict[str, bytes]]] = {
 
 
 def fault_of(folder: Path, files: dict[str, bytes], options: dict[str, Any]) -> str | None:
-    """What is wrong with how aolab takes the files, or None."""
+    """The fault in how aolab takes the files, or None."""
     import aolab
 
     for name, content in files.items():

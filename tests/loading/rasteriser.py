@@ -1,4 +1,4 @@
-"""A rasteriser of a few lines, in NumPy, which shares no code with aolab: what a picture of triangles has to show."""
+"""A rasteriser of a few lines, in NumPy: the right picture of triangles. It shares no code with aolab."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,7 +8,7 @@ import numpy as np
 
 @dataclass
 class Triangles:
-    """`corners` (T, 3, 3) in world space, and what they look like."""
+    """`corners` (T, 3, 3) in world space, and their looks."""
 
     corners: np.ndarray
     colors: np.ndarray = field(default_factory=lambda: np.full((1, 1, 3), 0.8))  # linear, (T or 1, 3 or 1, 3)
@@ -34,7 +34,7 @@ def draw(
     fov: float | None = None,
     ortho: float | None = None,
 ) -> Picture:
-    """What a camera sees that looks down its -z, by a ray through the centre of each pixel and every triangle."""
+    """The picture of a camera that looks down its -z: a ray through each pixel's centre meets every triangle."""
     width, height = size
     half = np.tan(np.radians(fov) / 2) if ortho is None else ortho / 2
     x, y = np.meshgrid((np.arange(width) + 0.5) / width * 2 - 1, 1 - (np.arange(height) + 0.5) / height * 2)

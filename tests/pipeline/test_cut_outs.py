@@ -1,4 +1,4 @@
-"""Holes, blending and single sides: what of a surface is drawn, near and far, and what rays meet of it."""
+"""Holes, blending and single sides: the part of a surface that is drawn, near and far, and that rays meet."""
 
 import numpy as np
 import pytest
@@ -120,7 +120,7 @@ def test_rays_pass_the_backs_of_single_sided_surfaces(mirrored):
 @pytest.mark.parametrize("wrap", ["repeat", "mirror", "clamp"])
 @pytest.mark.parametrize("nearest", [True, False])
 def test_rays_see_a_texture_as_the_picture_does(lab, wrap, nearest):
-    """What a surface sends to its neighbour: the truth's albedo is looked up at the points that rays meet."""
+    """The truth looks the albedo up at the points that rays meet: the light that a surface sends depends on it."""
     rng = np.random.default_rng(3)
     pixels = np.dstack([rng.integers(0, 256, (4, 4, 3), np.uint8), np.full((4, 4), 255, np.uint8)])
     texture = Texture(pixels, "noise", wrap=(wrap, wrap), nearest=nearest, mipmaps=False)

@@ -66,7 +66,7 @@ Sixteen = Annotated[list[float], Field(min_length=16, max_length=16)]
 
 
 class Object(BaseModel):
-    """A JSON object. Properties that are not declared are kept in `model_extra`; one that is null counts as absent."""
+    """A JSON object. Properties that are not declared are kept in `model_extra`; a null property counts as absent."""
 
     model_config = ConfigDict(extra="allow", alias_generator=to_camel, populate_by_name=False, allow_inf_nan=False)
 

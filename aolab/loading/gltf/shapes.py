@@ -139,7 +139,7 @@ _KINDS = {
 
 
 def triangles(indices: np.ndarray, mode: int) -> np.ndarray:
-    """(F, 3) from the indices of triangles, a strip or a fan; what is left over at the end is no triangle."""
+    """(F, 3) from the indices of triangles, a strip or a fan. One or two indices left over at the end are dropped."""
     indices = indices.astype(np.int64)
     if mode == TRIANGLES:
         return indices[: len(indices) // 3 * 3].reshape(-1, 3)
