@@ -19,6 +19,7 @@ from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .modules.parameters import parameter as parameter
 from .modules.passes import Pass as Pass
+from .modules.question import Question as Question
 from .notebook.glyph import Glyph as Glyph
 from .notebook.picker import glyph_picker as glyph_picker
 from .notebook.reading import glyph as glyph

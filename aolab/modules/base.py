@@ -10,6 +10,7 @@ from ..gl.source import Constant
 from ..scene.scene import Scene
 from .parameters import AUTO, Parameters, parameter
 from .passes import AMBIENT, DIRECT, Estimate, Pass, reflect
+from .question import Question
 from .readable import Readable
 
 if TYPE_CHECKING:
@@ -153,6 +154,11 @@ class Module(Parameters):
     def samples(self, seed: int) -> dict[str, bytes]:
         """Uniform arrays that depend on the seed; another seed is another sample set."""
         return {}
+
+    def question(self) -> Question:
+        """The quantity that a `resolved` module approximates: `aolab.reference(scene, like=module)` computes it."""
+        values = self.model_dump()
+        return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True)
 
     def resolved(self, scene: Scene) -> Self:
         """The same with every `auto` made a number for this scene."""

@@ -198,6 +198,7 @@ class Lab:
             "scene": scene.source,
             "module": module.name or type(module).__name__,
             "parameters": module.model_dump(),
+            "question": asdict(module.question()),
             "camera": asdict(view.camera),
             "size": list(view.size),
             "seed": run.seeds.start,

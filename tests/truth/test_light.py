@@ -6,7 +6,7 @@ import pytest
 import aolab
 from aolab.scene.environment import direction_from_uv
 from aolab.truth import reference
-from aolab.truth.lighting import environment_radiance
+from aolab.truth.sky import environment_radiance
 
 from .rooms import ceiling_scene, quad, scene, wall_scene, world_positions
 
