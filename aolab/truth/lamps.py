@@ -14,11 +14,13 @@ import numpy as np
 
 from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
 from .hemisphere import Stratum, frames, strata
-from .lighting import color, received
+from .lighting import color, towards_light
 from .points import Points
 from .sample import Setting
 
-RAYS_A_SAMPLE = 16  # one ray from each lamp for so many from the receiver: 6 % more rays
+# One ray from the lamps, together, for so many from the receiver. Measured on `cornell` at 256 rays: the standard error
+# of `indirect` falls from 13.5 % of its root mean square to 5.0 %.
+RAYS_A_SAMPLE = 8
 
 
 def is_lamp(light: Light) -> bool:
@@ -26,9 +28,10 @@ def is_lamp(light: Light) -> bool:
     return not isinstance(light, DirectionalLight) and light.shadow
 
 
-def samples_of(rays: int) -> int:
+def samples_of(setting: Setting) -> int:
     """The number of rays from each lamp, even."""
-    return max(2, rays // (2 * RAYS_A_SAMPLE) * 2)
+    lamps = sum(map(is_lamp, setting.lights))
+    return max(2, setting.rays // (2 * RAYS_A_SAMPLE * max(lamps, 1)) * 2)
 
 
 def balance(setting: Setting, light: Light, geometry: np.ndarray, share: np.ndarray) -> np.ndarray:
@@ -36,7 +39,7 @@ def balance(setting: Setting, light: Light, geometry: np.ndarray, share: np.ndar
     if not is_lamp(light):
         return np.ones_like(share)
     by_rays = setting.rays * geometry
-    by_lamp = samples_of(setting.rays) * np.pi * setting.covered / _solid_angle(light) * share
+    by_lamp = samples_of(setting) * np.pi * setting.covered / _solid_angle(light) * share
     return by_rays / np.maximum(by_rays + by_lamp, np.float32(1e-30))
 
 
@@ -45,7 +48,7 @@ def from_lamps(
 ) -> Iterator[tuple[np.ndarray, np.ndarray]]:
     """Pairs of samples (n, 3) of the light that senders send to `points`, to be added to those of the rays."""
     for light in filter(is_lamp, setting.lights):
-        for stratum in strata(samples_of(setting.rays)):
+        for stratum in strata(samples_of(setting)):
             one, other = (_sample(setting, points, light, stratum, random) for _ in range(2))
             yield one, other
 
@@ -73,7 +76,8 @@ def _sample(
     blocked = world.occluded(points.position[found[counts]], towards[counts], distance[counts])
     counts = counts[~blocked]
 
-    share = received(world, light, sender[counts], normal[counts])
+    back, _, share = towards_light(light, sender[counts], world.centre)
+    share *= np.maximum((normal[counts] * back).sum(axis=1), 0)  # the ray came from the lamp: there is no shadow
     geometry = rising[counts] * facing[counts] / np.maximum(distance[counts] ** 2, np.float32(1e-30))
     weight = closed[counts] * share * balance(setting, light, geometry, share) / np.float32(np.pi)
     ends = found[counts]

@@ -19,7 +19,7 @@ def irradiance(world: World, lights: Iterable[Light], positions: np.ndarray, nor
 def received(world: World, light: Light, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """(n,) float32: the irradiance from `light` as a share of its `color`, 0 in its shadow."""
     towards, distance, share = towards_light(light, positions, world.centre)
-    share = share * np.maximum((normals * towards).sum(axis=1), 0)
+    share *= np.maximum((normals * towards).sum(axis=1), 0)
     lit = np.flatnonzero(share > 0)
     if light.shadow and len(lit):
         share[lit[world.occluded(positions[lit], towards[lit], distance[lit])]] = 0

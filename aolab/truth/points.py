@@ -21,6 +21,8 @@ BESIDE = [
     for r in (0.1, 0.4)
     for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))
 ]
+# A normal whose cosine to the triangle's is below this faces away from it; perpendicular ones, of a corner, do not.
+FACING = -0.01
 EPSILON = float(np.finfo(np.float32).eps)
 
 
@@ -44,6 +46,9 @@ class Surface:
     decides whether both mean the same surface. Where they do not (silhouettes: a rasteriser snaps vertices to a
     fraction of a pixel), rays close to the pixel's centre look for the G-buffer's surface; if none finds it, the point
     starts a pixel's width off the G-buffer's position, along its normal.
+
+    The normal is the G-buffer's. Where that faces away from the triangle that the ray meets, it is the triangle's: at a
+    silhouette the rasteriser may draw the far side of a solid, whose normal, turned to the viewer, points inside.
     """
 
     def __init__(self, frame: Frame, scene: Scene, view: View, world: World) -> None:
@@ -70,22 +75,21 @@ class Surface:
         """The points of the pixels number `where` (m,). Safe to call from any thread."""
         pixel = self.pixel[where]
         shading = _unit(self._normal.reshape(-1, 3)[pixel].astype(np.float64) @ self._world_from_view[:3, :3].T)
-        position, geometric, same = self._meet(pixel, shading, (0.0, 0.0))
+        position, geometric, same = self._meet(pixel, (0.0, 0.0))
         for offset in BESIDE:
             if same.all():
                 break
             rest = np.flatnonzero(~same)
-            position[rest], geometric[rest], same[rest] = self._meet(pixel[rest], shading[rest], offset)
+            position[rest], geometric[rest], same[rest] = self._meet(pixel[rest], offset)
         rest = np.flatnonzero(~same)
         shown, pixel_width = self._shown(pixel[rest])
         position[rest] = shown + shading[rest] * (pixel_width + self._rounding)[:, None]
-        flat = same & (np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING)
-        shading[flat] = geometric[flat]
+        away = (shading * geometric).sum(axis=1) < FACING
+        flat = np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING
+        shading = np.where((same & (away | flat))[:, None], geometric, shading)
         return Points(position.astype(np.float32), shading.astype(np.float32))
 
-    def _meet(
-        self, pixel: np.ndarray, shading: np.ndarray, offset: tuple[float, float]
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _meet(self, pixel: np.ndarray, offset: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Where rays through pixels meet a triangle, lifted (m, 3); its normal (m, 3); is it the G-buffer's (m,)?
 
         The rays pass `offset` (x, y), in pixels, beside the pixels' centres.
@@ -99,8 +103,7 @@ class Surface:
         corner = self._world.corners[hits.triangle, 0]
         shown, pixel_width = self._shown(pixel)
         off_plane = np.abs(((shown - corner) * normal).sum(axis=1))
-        facing = (shading * normal).sum(axis=1) > 0
-        same = (hits.triangle >= 0) & facing & (off_plane <= pixel_width / SAME_PLANE + self._rounding)
+        same = (hits.triangle >= 0) & (off_plane <= pixel_width / SAME_PLANE + self._rounding)
         met = first + directions * np.where(hits.triangle >= 0, hits.distance, 0).astype(np.float64)[:, None]
         height = ((met - corner) * normal).sum(axis=1)  # what single precision left
         return met + normal * (self._world.lift - height)[:, None], normal, same

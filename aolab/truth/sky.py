@@ -13,7 +13,7 @@ import numpy as np
 from ..scene.environment import Environment, uv_from_direction
 from .world import bilinear
 
-BRIGHT = 4.0  # times the mean luminance over the sphere; see `docs/truth.md` for the noise with and without
+BRIGHT = 8.0  # times the mean luminance over the sphere; see `docs/truth.md` for the noise with and without
 _REC_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
