@@ -7,6 +7,8 @@ import numpy as np
 from .metrics import Measures, angles
 from .quantities import Kind
 
+NOISY = 1 / 3  # of the RMSE: more noise of the reference than this is 11 % of the squared error, and is told
+
 
 @dataclass(frozen=True, eq=False)
 class BufferComparison:
@@ -26,6 +28,16 @@ class BufferComparison:
         if name in Measures.__dataclass_fields__:
             return getattr(self.measures["all"], name)
         raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
+
+    @property
+    def about_noise(self) -> str:
+        """The share of the reference's own noise in the RMSE, in words."""
+        rest = np.sqrt(max(self.rmse**2 - self.noise**2, 0))
+        return (
+            f"buffer '{self.name}': the reference's own standard error, {self.noise:.2g}, is "
+            f"{self.noise / self.rmse:.0%} of the RMSE, {self.rmse:.2g}; without it the RMSE is about {rest:.2g}. "
+            "Give the reference more `rays`, or an `error`"
+        )
 
     @property
     def error(self) -> np.ndarray:

@@ -15,9 +15,10 @@ from PIL import Image
 
 from ..errors import Notice, ParameterError, suggestion
 from ..output import replacing
-from .buffer import BufferComparison
+from .agreement import check
+from .buffer import NOISY, BufferComparison
 from .metrics import Measures, angles, differences, psnr
-from .pairing import Buffers, common, label, regions, size_of
+from .pairing import Buffers, common, errors, label, regions, size_of
 from .perception import flip_map, ssim_map
 from .quantities import kind_of, picture
 
@@ -75,6 +76,8 @@ class Comparison:
         lines = [f"{self.names[0]} against {self.names[1]}, {width}×{height}"]
         for name, one in self.buffers.items():
             lines += ["", *_table(name, one.kind.unit, one.measures)]
+            if one.noise > NOISY * one.rmse > 0:
+                lines.append(f"  note: {one.about_noise}")
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -115,13 +118,23 @@ def compare(
     Raises `ParameterError` for sizes that differ, no common buffer, or nothing but background.
     """
     pairs = common(a, b, buffers)
-    where = regions(a, b, size_of(pairs), border)
-    compared = {name: _compare_buffer(name, *pair, where, flip) for name, pair in pairs.items()}
-    return Comparison((label(a, "a"), label(b, "b")), compared, where)
+    names = label(a, "a"), label(b, "b")
+    check(a, b, names, pairs)
+    where, noise = regions(a, b, size_of(pairs), border), errors(b, pairs)
+    compared = {name: _compare_buffer(name, *pair, noise.get(name), where, flip) for name, pair in pairs.items()}
+    for one in compared.values():
+        if one.noise > NOISY * one.rmse > 0:
+            warnings.warn(one.about_noise, Notice, stacklevel=2)
+    return Comparison(names, compared, where)
 
 
 def _compare_buffer(
-    name: str, result: np.ndarray, reference: np.ndarray, where: dict[str, np.ndarray], flip: bool
+    name: str,
+    result: np.ndarray,
+    reference: np.ndarray,
+    noise: np.ndarray | None,
+    where: dict[str, np.ndarray],
+    flip: bool,
 ) -> BufferComparison:
     kind = kind_of(name)
     foreground = where["all"] & ~(np.isnan(result).all(axis=2) & np.isnan(reference).all(axis=2))
@@ -148,6 +161,8 @@ def _compare_buffer(
             maps["flip"] = flip_map(*((np.maximum(a, 0), np.maximum(b, 0)) if hdr else (seen_a, seen_b)), hdr=hdr)
     if kind.error == "angle":
         maps["angle"] = angles(result, reference)
+    if noise is not None:
+        maps["noise"] = (np.nan_to_num(noise).astype(np.float64) ** 2).mean(axis=2)
     difference = result.astype(np.float64) - reference
     measures = {region: _measure(difference, maps, mask & foreground) for region, mask in where.items()}
     return BufferComparison(name, kind, result, reference, foreground, measures)
@@ -161,6 +176,8 @@ def _measure(difference: np.ndarray, maps: dict[str, np.ndarray], mask: np.ndarr
     if "squared" in maps:
         found["psnr"] = psnr(np.sqrt(maps["squared"][mask]))
     found |= {name: float(maps[name][mask].mean()) for name in ("ssim", "flip") if name in maps}
+    if "noise" in maps:
+        found["noise"] = float(np.sqrt(maps["noise"][mask].mean()))
     if "angle" in maps:
         known = maps["angle"][mask]
         known = known[np.isfinite(known)]

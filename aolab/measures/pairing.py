@@ -7,6 +7,7 @@ import numpy as np
 
 from ..errors import Notice, ParameterError, suggestion
 from ..pipeline.frame import Frame
+from ..truth.buffers import standard_error
 from .quantities import kind_of
 from .regions import BORDER_SHARE, border, projected_px, silhouettes, thin_occluders
 
@@ -26,6 +27,15 @@ def common(a: Buffers, b: Buffers, wanted: Iterable[str] | str | None) -> Pairs:
         if one.shape != other.shape or one.shape[:2] != (height, width):
             raise ParameterError(f"buffer '{name}': sizes differ, a is {_shape(one)}, b is {_shape(other)}")
     return _with_harmonics(pairs)
+
+
+def errors(reference: Buffers, pairs: Pairs) -> dict[str, np.ndarray]:
+    """{name: the reference's standard error (H, W, C)}, of the compared buffers for which the reference holds it."""
+    known = _names(reference)
+    parts = [*(name for name in pairs if name in known), *(name for name in _HARMONICS if "sh" in pairs)]
+    found = {name: _array(reference, standard_error(name), "b") for name in parts if standard_error(name) in known}
+    made = _with_harmonics({name: (values, values) for name, values in found.items()})
+    return {name: values for name, (values, _) in made.items() if name in pairs}
 
 
 def size_of(pairs: Pairs) -> tuple[int, int]:
@@ -68,7 +78,7 @@ def _chosen(a: Buffers, b: Buffers, wanted: Iterable[str] | str | None) -> list[
     if not shared:
         raise ParameterError(f"no common buffer: a has {', '.join(in_a) or 'none'}; b has {', '.join(in_b) or 'none'}")
     if wanted is None:
-        results = [name for name in shared if name not in (*SURFACES, "standard_error")]
+        results = [name for name in shared if name not in (*SURFACES, "rays") and not name.endswith("standard_error")]
         if not results:
             raise ParameterError(f"no common result, only {', '.join(shared)}: name them in `buffers` to compare those")
         return sorted(results, key=lambda name: name != "visibility")

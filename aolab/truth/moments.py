@@ -5,6 +5,7 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 Pair = tuple[str, str]
+Sums = dict[str | Pair, np.ndarray]
 
 
 class Moments:
@@ -17,9 +18,9 @@ class Moments:
 
     def __init__(self, count: int, channels: Mapping[str, int], crosses: Iterable[Pair] = ()) -> None:
         self._samples = np.zeros((count, 1), np.float32)
-        self._sums = {name: np.zeros((count, width), np.float32) for name, width in channels.items()}
-        self._squares = {name: np.zeros_like(total) for name, total in self._sums.items()}
-        self._products = {
+        self._sums: Sums = {name: np.zeros((count, width), np.float32) for name, width in channels.items()}
+        self._squares: Sums = {name: np.zeros_like(total) for name, total in self._sums.items()}
+        self._products: Sums = {
             (a, b): np.zeros((count, max(channels[a], channels[b])), np.float32)
             for a, b in crosses
             if a in channels and b in channels
@@ -56,16 +57,6 @@ class Moments:
         ):
             for key, values in theirs.items():
                 mine[key][where] += values
-
-    def of(self, where: slice) -> "Moments":
-        """The moments of some points alone."""
-        part = Moments(0, {})
-        part._samples = self._samples[where]
-        part._sums, part._squares, part._products = (
-            {key: values[where] for key, values in table.items()}
-            for table in (self._sums, self._squares, self._products)
-        )
-        return part
 
     def mean(self, name: str) -> np.ndarray:
         """(count, channels) float32."""

@@ -47,8 +47,8 @@ class Shot:
     ) -> Frame:
         """The frame with the `wanted` buffers: those that are stored are read, and `make` computes the others.
 
-        `renderer`, `settings` and `seed` are all that the buffers depend on besides the scene, the view and the package's
-        code. `info` repeats them, and holds the `question` that the buffers answer.
+        `renderer`, `settings` and `seed` are all that the buffers depend on besides the scene, the view and the
+        package's code. `info` repeats them, and holds the `question` that the buffers answer.
         """
         camera = asdict(self.view.camera)
         made_of = {"renderer": renderer, "camera": camera, "size": self.view.size, "seed": seed, **settings}
