@@ -44,8 +44,8 @@ class Explanation:
 
     A part for which the module has no parameter is 0, and joins the next one.
 
-    The `share` of a part is its part of the squared error, Σ part · error / Σ error². The shares add up to 1; a negative
-    share means that without this part the error would be larger.
+    The `share` of a part is its part of the squared error, Σ part · error / Σ error². The shares add up to 1; without a
+    part whose share is negative, the error would be larger.
     """
 
     frame: Frame

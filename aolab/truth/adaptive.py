@@ -1,4 +1,4 @@
-"""More rays where the error is: how many batches each pixel needs until its standard error meets a target."""
+"""More rays where the error is: the number of batches that each pixel needs to meet a target."""
 
 import numpy as np
 from scipy.ndimage import uniform_filter
@@ -13,11 +13,12 @@ NEIGHBOURS = 5  # pixels: the side of the square whose other pixels decide
 
 
 def batches_needed(surface: Surface, moments: Moments, wanted: list[str], target: float) -> np.ndarray:
-    """(n,): batches, the first one included, that bring the standard error of each point's buffers to `target`.
+    """(n,): batches, the first one included, that bring the standard error around each point to `target`.
 
     `target` is relative to the buffer's root mean square over the image. The variance of a mean falls as 1 / batches.
-    A point's own samples have no say, only those of its neighbours on the screen: else a point whose first samples
-    happened to agree would stop early, and the mean over all points would be off (Kirk and Arvo 1991).
+    Only the samples of a point's neighbours on the screen decide. Its own must not: a point whose first samples happen
+    to agree would stop early, and the mean over all points would be biased (Kirk and Arvo 1991, Unbiased Sampling
+    Techniques for Image Synthesis).
     """
     needed = np.ones(len(surface))
     for name in wanted:

@@ -22,6 +22,7 @@ from ..scene.scene import Scene
 
 BUDGET = 2_000_000_000  # bytes; the entries used longest ago go first
 PACKAGE = Path(__file__).parents[1]
+DAMAGED = (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile)  # what an unreadable entry raises
 
 
 def folder() -> Path:
@@ -60,11 +61,10 @@ def load(name: str, wanted: Iterable[str]) -> dict[str, np.ndarray]:
     """Those of the `wanted` arrays that are stored under `name`. A damaged entry holds none, with a `Notice`."""
     path = _path(name)
     try:
-        with np.load(path, allow_pickle=False) as file:
-            arrays = {one: file[one] for one in wanted if one in file.files}
+        arrays = _read(path, wanted)
     except (FileNotFoundError, NotADirectoryError):
         return {}
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
+    except DAMAGED as error:
         warnings.warn(f"the cached reference {path.name} is damaged and is made anew: {error}", Notice, stacklevel=4)
         return {}
     with suppress(OSError):
@@ -75,23 +75,22 @@ def load(name: str, wanted: Iterable[str]) -> dict[str, np.ndarray]:
 def store(name: str, arrays: Mapping[str, np.ndarray]) -> None:
     """Add `arrays` to those under `name`, replacing the file atomically. A failure is a `Notice`, no error."""
     path = _path(name)
+    kept: dict[str, np.ndarray] = {}
+    with suppress(*DAMAGED):
+        kept = _read(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        kept = {**_stored(path), **arrays}
         with replacing(path) as file:
-            np.savez(file, **kept)  # type: ignore[arg-type]
+            np.savez(file, **{**kept, **arrays})  # type: ignore[arg-type]
         _trim(path.parent)
     except (OSError, FileError) as error:
         warnings.warn(f"the reference could not be cached: {error}; set AOLAB_CACHE", Notice, stacklevel=4)
 
 
-def _stored(path: Path) -> dict[str, np.ndarray]:
-    """All arrays of an entry; none of a missing or damaged one, which is replaced."""
-    try:
-        with np.load(path, allow_pickle=False) as file:
-            return dict(file)
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile):
-        return {}
+def _read(path: Path, wanted: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+    """The arrays of an entry, or the `wanted` ones. Raises one of `DAMAGED`."""
+    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+        return {one: file[one] for one in (file.files if wanted is None else wanted) if one in file.files}
 
 
 def _path(name: str) -> Path:

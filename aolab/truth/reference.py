@@ -58,8 +58,8 @@ def reference(
     `rays`, even, are cast from each pixel's centre, stratified, with density cosθ/π around the G-buffer's normal. They
     start off the surface (`World.lift`, `points.Surface`); a ray that dips below its triangle, as shading normals
     allow, meets that triangle and is blocked. All triangles block, from both sides; holes of cut-out textures do not.
-    `error` is a target for each pixel's standard error, as a share of the buffer's root mean square over the image:
-    pixels get up to 16 times `rays` until they meet it. A `Notice` says where they do not.
+    `error` is a target for the standard error, as a share of the buffer's root mean square over the image: pixels get
+    up to 16 times `rays` where the error around them is greater. A `Notice` names a buffer that misses the target.
 
     `buffers` chooses what is computed, and what it costs. Each comes with its standard error, as `NAME_standard_error`;
     that of `visibility` is `standard_error`. Besides viewZ, viewNormal and albedo, which are the render's:

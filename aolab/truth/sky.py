@@ -10,11 +10,14 @@ from functools import cached_property
 
 import numpy as np
 
-from ..scene.environment import Environment, uv_from_direction
+from ..scene.environment import Environment, direction_from_uv, uv_from_direction
 from .world import bilinear
 
-BRIGHT = 8.0  # times the mean luminance over the sphere; see `docs/truth.md` for the noise with and without
-_REC_709 = np.array([0.2126, 0.7152, 0.0722])
+# Times the mean luminance over the sphere. Measured on `colonnade` under a sky with a sun, at 256 rays: the standard error
+# of `ambient` falls from 22.6 % of its root mean square to 2.6 %, that of `indirect` from 50 % to 9.5 %. With 4, `boxes`
+# and its two soft boxes pay for rays that gain nothing.
+BRIGHT = 8.0
+REC_709 = np.array([0.2126, 0.7152, 0.0722])
 
 
 def environment_radiance(environment: Environment, directions: np.ndarray) -> np.ndarray:
@@ -27,14 +30,12 @@ class Sky:
 
     def __init__(self, environment: Environment) -> None:
         radiance = environment.radiance
-        luminance = radiance @ _REC_709
-        self._row_edges = np.cos(np.pi * np.arange(len(radiance) + 1) / len(radiance))  # cosines of the polar angle
-        solid_angle = -np.diff(self._row_edges)[:, None] * 2 * np.pi / radiance.shape[1]
-        limit = BRIGHT * (luminance * solid_angle).sum() / (4 * np.pi)
+        luminance = radiance @ REC_709
+        rows = -np.diff(np.cos(np.pi * np.arange(len(radiance) + 1) / len(radiance)))  # solid angles; they add up to 2
+        limit = BRIGHT * (luminance.mean(axis=1) * rows).sum() / 2
         share = np.minimum(1, limit / np.maximum(luminance, 1e-30))[..., None]
         self._even = (radiance * share).astype(np.float32)
         self._bright = radiance - self._even
-        self._solid_angle = solid_angle
         self.has_light = bool(radiance.any())
         self.has_bright_part = bool((luminance > limit).any())
 
@@ -45,33 +46,37 @@ class Sky:
     def towards_bright(self, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Directions (n, 3) drawn in proportion to the bright part, and its radiance / density (n, 3) float32.
 
-        `u`, `v` (n,) are uniform in [0, 1): `u` picks the texel and the height within it, `v` the azimuth within it.
+        `u`, `v` (n,) are uniform in [0, 1): `u` draws the texel and the height in it, `v` draws the azimuth in it.
         """
-        steps, density = self._distribution
+        weight, steps = self._distribution
+        height, width = weight.shape[:2]
         texel = np.minimum(np.searchsorted(steps, u, side="right"), len(steps) - 1)
         below = np.where(texel > 0, steps[texel - 1], 0)
         within = (u - below) / np.maximum(steps[texel] - below, 1e-300)
-        width = self._even.shape[1]
-        row, column = texel // width, texel % width
-        up = self._row_edges[row] + (self._row_edges[row + 1] - self._row_edges[row]) * within
-        azimuth = 2 * np.pi * ((column + v) / width - 0.5)
-        across = np.sqrt(np.maximum(1 - up * up, 0))
-        directions = np.stack([across * np.sin(azimuth), up, -across * np.cos(azimuth)], axis=-1).astype(np.float32)
-        return directions, _look_up(self._bright, directions) / density[texel].astype(np.float32)[:, None]
+        # The tent of bilinear interpolation around the texel's centre. So the density between texels is the interpolated
+        # weight; it is mirrored at the poles, where the look-up repeats the last row.
+        row = np.abs(texel // width + 0.5 + _tent(within))
+        row = np.where(row > height, 2 * height - row, row)
+        column = texel % width + 0.5 + _tent(v)
+        polar = np.pi * row / height
+        directions = direction_from_uv(np.stack([column / width, row / height], axis=-1)).astype(np.float32)
+        # density over uv, whose area is 2π² sinθ to the solid angle
+        density = bilinear(weight, column / width, row / height, repeat_rows=False)[:, 0] * height * width
+        scale = 2 * np.pi**2 * np.sin(polar) / np.maximum(density, 1e-30)
+        return directions, _look_up(self._bright, directions) * scale.astype(np.float32)[:, None]
 
     @cached_property
     def _distribution(self) -> tuple[np.ndarray, np.ndarray]:
-        """The cumulative distribution over texels (H·W,), and the density (H·W,) over solid angle in each.
+        """The share (H, W, 1) float32 of each texel in the bright part's light, and the cumulative shares (H·W,)."""
+        rows = -np.diff(np.cos(np.pi * np.arange(len(self._bright) + 1) / len(self._bright)))
+        weight = (self._bright @ REC_709) * rows[:, None]
+        weight /= weight.sum()
+        return weight.astype(np.float32)[..., None], np.cumsum(weight)
 
-        A texel's value reaches half a texel beyond its edges, for the look-up is bilinear: so a texel is drawn by the
-        brightest of its neighbours and itself.
-        """
-        luminance = self._bright @ _REC_709
-        padded = np.pad(np.pad(luminance, ((1, 1), (0, 0)), "edge"), ((0, 0), (1, 1)), "wrap")
-        brightest = np.lib.stride_tricks.sliding_window_view(padded, (3, 3)).max(axis=(2, 3))
-        weight = (brightest * self._solid_angle).ravel()
-        steps = np.cumsum(weight) / weight.sum()
-        return steps, brightest.ravel() / weight.sum()
+
+def _tent(u: np.ndarray) -> np.ndarray:
+    """(n,) in [-1, 1] with the density 1 - |x|, from `u` (n,) uniform in [0, 1]."""
+    return np.where(u < 0.5, np.sqrt(2 * u) - 1, 1 - np.sqrt(np.maximum(2 - 2 * u, 0)))
 
 
 def _look_up(radiance: np.ndarray, directions: np.ndarray) -> np.ndarray:

@@ -214,5 +214,5 @@ def test_a_negative_border_and_a_missing_buffer_are_refused(noise):
 def test_other_surfaces_are_told(noise):
     view_z = scene_depth()
     moved = np.roll(view_z, 1, axis=0)
-    with pytest.warns(aolab.Notice, match="112 pixels are background in one of them"):
+    with pytest.warns(aolab.Notice, match="112 pixels, background in one of them"):
         compare({"visibility": noise, "viewZ": view_z}, {"visibility": noise, "viewZ": moved}, flip=False)
