@@ -13,9 +13,9 @@ import numpy as np
 from ..scene.environment import Environment, direction_from_uv, uv_from_direction
 from .world import bilinear
 
-# Times the mean luminance over the sphere. Measured on `colonnade` under a sky with a sun, at 256 rays: the standard error
-# of `ambient` falls from 22.6 % of its root mean square to 2.6 %, that of `indirect` from 50 % to 9.5 %. With 4, `boxes`
-# and its two soft boxes pay for rays that gain nothing.
+# Times the mean luminance over the sphere. Measured on `colonnade` under a sky with a sun, at 256 rays: the standard
+# error of `ambient` falls from 22.6 % of its root mean square to 2.6 %, that of `indirect` from 50 % to 9.5 %. With 4,
+# `boxes` and its two soft boxes pay for rays that gain nothing.
 BRIGHT = 8.0
 REC_709 = np.array([0.2126, 0.7152, 0.0722])
 
@@ -53,8 +53,8 @@ class Sky:
         texel = np.minimum(np.searchsorted(steps, u, side="right"), len(steps) - 1)
         below = np.where(texel > 0, steps[texel - 1], 0)
         within = (u - below) / np.maximum(steps[texel] - below, 1e-300)
-        # The tent of bilinear interpolation around the texel's centre. So the density between texels is the interpolated
-        # weight; it is mirrored at the poles, where the look-up repeats the last row.
+        # The tent of bilinear interpolation around the texel's centre: the density between texels is the interpolated
+        # weight. It is mirrored at the poles, where the look-up repeats the last row.
         row = np.abs(texel // width + 0.5 + _tent(within))
         row = np.where(row > height, 2 * height - row, row)
         column = texel % width + 0.5 + _tent(v)

@@ -67,7 +67,7 @@ def test_a_light_that_is_the_same_all_around_is_refused():
 
 def test_a_module_against_the_reference(boxes):
     """An open, convex-ish scene: visibility times the mean irradiance errs, but less than no occlusion at all."""
-    options = {"k": 2, "environment": SUN, "size": (48, 32), "rays": 16}
+    options = {"k": 2, "environment": SUN, "size": (48, 32), "rays": 256}
     found = relighting_error(boxes, "ssao", **options, radius=0.5, steps=8)
     assert 0 < found.rmse < 1
     assert all(one.pixels > 0 for one in found.measures)

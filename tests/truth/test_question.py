@@ -142,7 +142,7 @@ def sealed_room():
 
 
 def test_in_a_sealed_room_a_module_and_its_truth_bounce_alike(lab):
-    """Measured: ambient .716 by rays and .724 by SSDO, indirect .043 by both; the physical answer has no bounce at all."""
+    """Measured: ambient .716 by rays, .724 by SSDO; indirect .043 by both. The physical answer has no bounce at all."""
     module = aolab.SSDO(
         radius=1.0, bounces=1, senders="rays", directions=16, steps=16, filter="none", thickness=10.0, bias=0.0
     )

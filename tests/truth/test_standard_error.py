@@ -1,4 +1,4 @@
-"""The stated standard error of every buffer is how far results of different seeds scatter; more rays where it is large."""
+"""The stated standard error of every buffer is the scatter over seeds, and a target sends rays where it is large."""
 
 import numpy as np
 import pytest
@@ -77,7 +77,7 @@ def test_a_target_sends_rays_where_the_error_is():
 
 
 def test_a_target_does_not_move_the_mean():
-    """Points that stopped because their own first samples agreed would be too dark: a sun's rays are rare and bright."""
+    """Points that stopped when their own first samples agree would be too dark: bright samples are rare."""
     settings = {"size": (20, 15), "rays": 8, "radius": 1.5, "buffers": "indirect", "cache": False}
     exact = reference(lit_room(), **{**settings, "rays": 2048})
     expected = exact["indirect"][exact.mask].mean()
