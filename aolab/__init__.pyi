@@ -21,6 +21,7 @@ from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .modules.parameters import parameter as parameter
 from .modules.passes import Pass as Pass
+from .modules.question import Question as Question
 from .notebook.explore import explore as explore
 from .notebook.glyph import Glyph as Glyph
 from .notebook.microscope import Microscope as Microscope

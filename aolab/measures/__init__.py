@@ -1,4 +1,4 @@
-"""How far a result is from the truth: measures, where in the image they are taken, and pictures of the error."""
+"""How far a result is from the truth: measures, the regions that they are taken in, and pictures of the error."""
 
 from .comparison import Comparison, compare
 from .turning_light import Relighting, relight, relighting_error

@@ -7,12 +7,14 @@ import numpy as np
 from .metrics import Measures, angles
 from .quantities import Kind
 
+NOISY = 1 / 3  # of the RMSE: this much noise of the reference is 11 % of the squared error
+
 
 @dataclass(frozen=True, eq=False)
 class BufferComparison:
-    """One buffer: `result` and `reference` (H, W, C) float32, the `foreground` (H, W) they are compared on.
+    """One buffer: `result` and `reference` (H, W, C) float32, and `foreground` (H, W), the compared pixels.
 
-    `measures` by region; the measures of all the foreground are attributes: `comparison["visibility"].rmse`.
+    `measures` are by region. Those of the whole foreground are attributes: `comparison["visibility"].rmse`.
     """
 
     name: str
@@ -28,8 +30,23 @@ class BufferComparison:
         raise AttributeError(f"{type(self).__name__} has no attribute '{name}'")
 
     @property
+    def is_noisy(self) -> bool:
+        """Whether the reference's own noise, where it is known, is a good part of the RMSE."""
+        return self.noise > NOISY * self.rmse > 0
+
+    @property
+    def about_noise(self) -> str:
+        """The share of the reference's own noise in the RMSE, in words."""
+        rest = np.sqrt(max(self.rmse**2 - self.noise**2, 0))
+        return (
+            f"buffer '{self.name}': the reference's own standard error, {self.noise:.2g}, is "
+            f"{self.noise / self.rmse:.0%} of the RMSE, {self.rmse:.2g}; without it the RMSE is about {rest:.2g}. "
+            "Give the reference more `rays`, or an `error`"
+        )
+
+    @property
     def error(self) -> np.ndarray:
-        """(H, W) float64, NaN where nothing is compared: each pixel's error, as its kind has it (`Kind.error`)."""
+        """(H, W) float64: each pixel's error, as `Kind.error` defines it; NaN where nothing is compared."""
         difference = self.result.astype(np.float64) - self.reference
         if self.kind.error == "angle":
             values = angles(self.result, self.reference)

@@ -15,16 +15,17 @@ from ..errors import Notice, ParameterError, suggestion
 from ..output import replacing
 from ..pictures import display, html
 from ..table import table
+from .agreement import check
 from .buffer import BufferComparison
 from .metrics import Measures, angles, differences, psnr
-from .pairing import Buffers, common, label, regions, size_of
+from .pairing import Buffers, common, errors, label, regions, size_of
 from .perception import flip_map, ssim_map
 from .quantities import kind_of, picture
 
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
-    """What `compare` gives back: prints as a table, shows itself in notebooks, goes to JSON.
+    """The result of `compare`: it prints as a table, shows itself in notebooks, and goes to JSON.
 
     `comparison["visibility"].rmse` over the whole foreground, `comparison["visibility"].measures["border"].rmse` in a
     region; `regions` are the masks (H, W).
@@ -40,9 +41,9 @@ class Comparison:
         return self.buffers[name]
 
     def picture(self, buffer: str | None = None, *, limit: float | None = None) -> Image.Image:
-        """Result, reference and error of `buffer` (the first by default), with a colour bar.
+        """Result, reference and error of `buffer` (by default the first), with a colour bar.
 
-        The scale ends at `limit`, in the buffer's unit; by default at the 99th percentile of the magnitudes.
+        The scale ends at `limit`, in the buffer's unit, by default at the 99th percentile of the magnitudes.
         """
         from .pictures import comparison_picture
 
@@ -75,6 +76,8 @@ class Comparison:
         lines = [f"{self.names[0]} against {self.names[1]}, {width}×{height}"]
         for name, one in self.buffers.items():
             lines += ["", _table(name, one.kind.unit, one.measures)]
+            if one.is_noisy:
+                lines.append(f"  note: {one.about_noise}")
         return "\n".join(lines)
 
     def __repr__(self) -> str:
@@ -101,10 +104,10 @@ def compare(
 ) -> Comparison:
     """Compare `a`, the result, with `b`, the reference: frames, or mappings of arrays (H, W) or (H, W, C).
 
-    `buffers` defaults to all that both have, but for the surfaces that renders share (viewZ, viewNormal, albedo) and
-    `standard_error`; sh0 .. sh3 become `sh`, all 16 coefficients, and its bands. The foreground is where both have a
-    surface (`viewZ`; without it, where not both are NaN). There, pixels that are not finite are left out, and a
-    `Notice` counts them. Measures are told in `Measures`; the regions are
+    `buffers` defaults to all that both have, except for the surfaces that renders share (viewZ, viewNormal, albedo) and
+    standard errors. sh0 .. sh3 become `sh`, all 16 coefficients, and its bands. The foreground is where both have a
+    surface (`viewZ`; without it, where not both are NaN). Pixels of the foreground that are not finite are left out,
+    and a `Notice` counts them. `Measures` holds the measures, by region:
 
     - `border`: nearer than `border` pixels to the image's edge; by default, pixels whose sphere of the frames' radius
       leaves the image, or, where no radius is known, 1/20 of the shorter side;
@@ -112,16 +115,36 @@ def compare(
     - `interior`: none of these.
 
     `flip=False` leaves out the slowest measure: 2 seconds a megapixel on two cores, for radiance a few times that.
-    Raises `ParameterError` for sizes that differ, no common buffer, or nothing but background.
+    A `Notice` names a buffer where the reference's own noise is more than a third of the RMSE, and what differs
+    between the questions, scenes and lights of two frames.
+    Raises `ParameterError` for sizes or cameras that differ, no common buffer, or nothing but background.
     """
+    compared = measured(a, b, buffers, border=border, flip=flip)
+    for one in compared.buffers.values():
+        if one.is_noisy:
+            warnings.warn(one.about_noise, Notice, stacklevel=2)
+    return compared
+
+
+def measured(
+    a: Buffers, b: Buffers, buffers: Iterable[str] | str | None, *, border: float | None = None, flip: bool = True
+) -> Comparison:
+    """`compare` without its `Notice` about noise, for callers that have their own."""
     pairs = common(a, b, buffers)
-    where = regions(a, b, size_of(pairs), border)
-    compared = {name: _compare_buffer(name, *pair, where, flip) for name, pair in pairs.items()}
-    return Comparison((label(a, "a"), label(b, "b")), compared, where)
+    names = label(a, "a"), label(b, "b")
+    check(a, b, names, pairs)
+    where, noise = regions(a, b, size_of(pairs), border), errors(b, pairs)
+    compared = {name: _compare_buffer(name, *pair, noise.get(name), where, flip) for name, pair in pairs.items()}
+    return Comparison(names, compared, where)
 
 
 def _compare_buffer(
-    name: str, result: np.ndarray, reference: np.ndarray, where: dict[str, np.ndarray], flip: bool
+    name: str,
+    result: np.ndarray,
+    reference: np.ndarray,
+    noise: np.ndarray | None,
+    where: dict[str, np.ndarray],
+    flip: bool,
 ) -> BufferComparison:
     kind = kind_of(name)
     foreground = where["all"] & ~(np.isnan(result).all(axis=2) & np.isnan(reference).all(axis=2))
@@ -148,6 +171,8 @@ def _compare_buffer(
             maps["flip"] = flip_map(*((np.maximum(a, 0), np.maximum(b, 0)) if hdr else (seen_a, seen_b)), hdr=hdr)
     if kind.error == "angle":
         maps["angle"] = angles(result, reference)
+    if noise is not None:
+        maps["noise"] = (np.nan_to_num(noise).astype(np.float64) ** 2).mean(axis=2)
     difference = result.astype(np.float64) - reference
     measures = {region: _measure(difference, maps, mask & foreground) for region, mask in where.items()}
     return BufferComparison(name, kind, result, reference, foreground, measures)
@@ -161,6 +186,8 @@ def _measure(difference: np.ndarray, maps: dict[str, np.ndarray], mask: np.ndarr
     if "squared" in maps:
         found["psnr"] = psnr(np.sqrt(maps["squared"][mask]))
     found |= {name: float(maps[name][mask].mean()) for name in ("ssim", "flip") if name in maps}
+    if "noise" in maps:
+        found["noise"] = float(np.sqrt(maps["noise"][mask].mean()))
     if "angle" in maps:
         known = maps["angle"][mask]
         known = known[np.isfinite(known)]

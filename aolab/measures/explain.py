@@ -1,4 +1,4 @@
-"""Telling errors apart: what of a module's error is noise, filter, steps, layers, screen border, and method."""
+"""An error split by its causes: noise, filter, steps, layers, screen border, method, and the reach of senders."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -18,13 +18,16 @@ from ..scene.scene import Scene
 from ..table import table
 
 CONVERGED = 64  # frames: noise falls to 1/8 of one frame's
-BACKGROUND = 153  # grey, in none of the colours of an error
+BACKGROUND = 153  # a grey that is no colour of an error
 STEPS = 32  # along a direction: as good as a ray, in an image of a few hundred rows
-LAYERS = 4  # of depth: what lies behind them is left to the method
-MARGIN = 0.5  # of the image's height, drawn around it to know what lies off the screen
+LAYERS = 4  # of depth; deeper ones are left to the method
+MARGIN = 0.5  # of the image's height: drawn around the image, it shows what lies off the screen
+PERIOD = 4  # pixels: the interleaved pattern of sample sets repeats after so many
 
-# each part is the difference of two neighbours in this chain of renders, from the module's frame to the truth
+# each part is the difference of two neighbours in a chain of results, from the module's frame to the truth
 PARTS = ("sampling noise", "filter", "few steps", "hidden layers", "off-screen geometry", "method")
+SENDERS = "limited senders"
+BOUNCED = ("indirect", "radiance", "image")  # the buffers that hold a bounce
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,15 +36,17 @@ class Explanation:
 
     - `sampling noise`: the frame against the mean of many, both filtered;
     - `filter`: that mean, filtered against unfiltered;
-    - `few steps`: unfiltered, against the same with directions marched as densely as a ray;
-    - `hidden layers`: that, with the camera's one layer of depth against four, peeled;
-    - `off-screen geometry`: that, against the same with a margin drawn around the image;
-    - `method`: what remains against rays.
+    - `few steps`: the unfiltered mean, against the same with directions marched as densely as a ray;
+    - `hidden layers`: the same, with the camera's one layer of depth against four peeled layers;
+    - `off-screen geometry`: the same, against a render with a margin drawn around the image;
+    - `method`: the rest, against rays that answer the module's own question;
+    - `limited senders`, of buffers with a bounce: these rays against rays whose senders receive the environment's light
+      from any distance, not only within the module's radius.
 
-    A part that the module has no parameter for is 0, and joins the next one.
+    A part for which the module has no parameter is 0, and joins the next one.
 
-    `share` of a part is its part of the squared error, Σ part · error / Σ error²: the shares add up to 1, and one that
-    is negative makes up for another.
+    The `share` of a part is its part of the squared error, Σ part · error / Σ error². The shares add up to 1; without a
+    part whose share is negative, the error would be larger.
     """
 
     frame: Frame
@@ -52,11 +57,11 @@ class Explanation:
 
     @property
     def residual(self) -> float:
-        """The largest difference between the error and the sum of its parts: rounding, or something is wrong."""
+        """The largest difference between the error and the sum of its parts: rounding, or else a fault."""
         return float(np.nanmax(np.abs(self.error - sum(self.parts.values()))))
 
     def table(self) -> dict[str, dict[str, float]]:
-        """{part: rmse, bias, share}, and the whole."""
+        """{part: rmse, bias, share}, and `error`, the whole."""
         squared = np.nansum(self.error**2)
 
         def row(values: np.ndarray) -> dict[str, float]:
@@ -98,17 +103,17 @@ def explain(
     module: str | Module | type[Module] = "ssao",
     *,
     buffer: str = "visibility",
-    size: Size = (640, 360),
+    size: Size = (480, 270),
     camera: Camera | None = None,
     rays: int = 256,
     seed: int = 0,
     frames: int = CONVERGED,
     **parameters: object,
 ) -> Explanation:
-    """Split a module's error in `buffer` into parts, each by the pair of renders that differ in just that.
+    """Split a module's error in `buffer` into parts, each the difference of two results that differ in one cause.
 
-    `frames` are averaged where the noise must be gone; `rays` a pixel make the truth, with the module's own radius and
-    falloff. Raises `ParameterError`, and what `aolab.render` and `aolab.reference` raise.
+    Where the noise must be gone, `frames` frames are averaged. The truth has `rays` a pixel and the module's own
+    question. Raises `ParameterError`, and what `aolab.render` and `aolab.reference` raise.
     """
     from ..truth import reference
 
@@ -126,26 +131,33 @@ def explain(
     frame = lab.render(scene, module, camera=camera, seed=seed)
     if buffer not in frame.buffers:
         raise ParameterError(f"{frame.info['module']} gives no '{buffer}'{suggestion(buffer, frame.buffers)}")
-    truth = reference(scene, size=size, camera=camera, rays=rays, like=module, seed=seed, buffers=(buffer,))
+    bounced = buffer in BOUNCED
+    questions = [module.question(), module.question().replace(limited_senders=False)][: 1 + bounced]
+    view = {"size": size, "camera": camera}
+    truths = [reference(scene, like=one, rays=rays, seed=seed, buffers=(buffer,), **view) for one in questions]
     chain = [
         frame[buffer],
         lab.render(scene, module, **converged)[buffer],
         lab.render(scene, bare, **converged)[buffer],
         lab.render(scene, marched, **converged)[buffer],
         lab.render(scene, layered, **converged)[buffer],
-        _with_margin(lab, scene, layered, camera, size, seed, frames)[buffer],
-        truth[buffer],
+        with_margin(lab, scene, layered, camera, size, seed, frames)[buffer],
+        *(truth[buffer] for truth in truths),
     ]
     chain = [np.where(_like(frame.mask, values), values, np.nan).astype(np.float64) for values in chain]
-    parts = {name: first - second for name, (first, second) in zip(PARTS, pairwise(chain), strict=True)}
-    return Explanation(frame, truth, buffer, chain[0] - chain[-1], parts)
+    names = [*PARTS, SENDERS][: len(chain) - 1]
+    parts = {name: first - second for name, (first, second) in zip(names, pairwise(chain), strict=True)}
+    return Explanation(frame, truths[-1], buffer, chain[0] - chain[-1], parts)
 
 
-def _with_margin(
+def with_margin(
     lab: Lab, scene: Scene, module: Module, camera: Camera, size: Size, seed: int, frames: int
 ) -> dict[str, np.ndarray]:
-    """The buffers of a larger image, cut to `size`: pixel for pixel the same view, but its border has neighbours."""
-    margin = 4 * round(MARGIN * size[1] / 4)  # whole periods of the interleaved pattern
+    """The buffers of a larger image, cut to `size`: pixel for pixel the same view, but its border has neighbours.
+
+    The margin is a whole number of periods, so that each pixel has the sample set that it has without a margin.
+    """
+    margin = PERIOD * round(MARGIN * size[1] / PERIOD)
     larger = size[0] + 2 * margin, size[1] + 2 * margin
     frame = lab.render(
         scene, module, camera=camera.with_margin(size, larger), size=larger, seed=seed, accumulate=frames

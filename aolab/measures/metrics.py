@@ -1,24 +1,31 @@
-"""The numbers: differences of pixels, summed up over a region."""
+"""The numbers: the differences of a region's pixels, summed up."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 NAN = float("nan")
+WORST = 0.01  # of the pixels: those that `trimmed` leaves out, at least one
 
 
 @dataclass(frozen=True)
 class Measures:
-    """What a region's pixels say; NaN where a measure has no meaning, or the region no pixel.
+    """The measures of one region; NaN where a measure has no meaning, or the region has no pixel.
 
     Of the values' differences, result - reference, over all pixels and channels: `rmse`, `bias` (their mean), `mae`
-    (mean of the magnitudes), `p50`, `p90`, `p99` (percentiles of the magnitudes) and `maximum`.
-    Of the pictures (`Kind.picture`): `psnr` (decibels, infinite for equal ones), `ssim`, `flip`.
+    (mean of the magnitudes), `p50`, `p90`, `p99` (percentiles of the magnitudes) and `maximum`. A few pixels may make
+    most of the RMSE: `trimmed` is the RMSE without the 1 % of the pixels that err most, and `outliers` is the share
+    of these pixels in the sum of squares. `noise` is the root mean square of the reference's standard error.
+    Of the pictures (`Kind.picture`): `psnr` (decibels, infinite for equal pictures), `ssim`, `flip`.
     Of directions: `angle`, mean, and `angle_p90`, in degrees.
     """
 
     pixels: int
     rmse: float = NAN
+    trimmed: float = NAN
+    outliers: float = NAN
+    noise: float = NAN
     bias: float = NAN
     mae: float = NAN
     p50: float = NAN
@@ -33,12 +40,16 @@ class Measures:
 
 
 def differences(difference: np.ndarray) -> dict[str, float]:
-    """rmse, bias, mae, percentiles and maximum of differences of any shape, not empty."""
+    """The measures of differences (..., channels) or (pixels,), not empty: those from `rmse` to `maximum`."""
     difference = np.asarray(difference, np.float64)
     magnitude = np.abs(difference)
     p50, p90, p99 = np.percentile(magnitude, (50, 90, 99))
+    squares = np.sort((difference**2).mean(axis=-1).ravel() if difference.ndim > 1 else difference**2)
+    worst = math.ceil(WORST * len(squares))
     return {
-        "rmse": float(np.sqrt(np.mean(difference**2))),
+        "rmse": float(np.sqrt(squares.mean())),
+        "trimmed": float(np.sqrt(squares[:-worst].mean())) if worst < len(squares) else NAN,
+        "outliers": float(squares[-worst:].sum() / squares.sum()) if squares[-1] > 0 else 0.0,
         "bias": float(difference.mean()),
         "mae": float(magnitude.mean()),
         "p50": float(p50),

@@ -1,4 +1,4 @@
-"""What is compared: the arrays that two results share, and the regions of their image."""
+"""The arrays that two results share, and the regions of their image."""
 
 import warnings
 from collections.abc import Iterable, Mapping
@@ -7,13 +7,14 @@ import numpy as np
 
 from ..errors import Notice, ParameterError, suggestion
 from ..pipeline.frame import Frame
+from ..truth.buffers import standard_error
 from .quantities import kind_of
 from .regions import BORDER_SHARE, border, projected_px, silhouettes, thin_occluders
 
 Buffers = Frame | Mapping[str, np.ndarray]
 Pairs = dict[str, tuple[np.ndarray, np.ndarray]]
 
-SURFACES = ("viewZ", "viewNormal", "albedo")  # a render and its reference share them: compared only where asked for
+SURFACES = ("viewZ", "viewNormal", "albedo")  # equal in a render and its reference: compared on request only
 _HARMONICS = ("sh0", "sh1", "sh2", "sh3")  # four coefficients each; together they are `sh`, and its bands
 _BAND_OF = np.repeat([0, 1, 2, 3], [1, 3, 5, 7])
 
@@ -28,6 +29,15 @@ def common(a: Buffers, b: Buffers, wanted: Iterable[str] | str | None) -> Pairs:
     return _with_harmonics(pairs)
 
 
+def errors(reference: Buffers, pairs: Pairs) -> dict[str, np.ndarray]:
+    """{name: the reference's standard error (H, W, C)}, of the compared buffers for which the reference holds it."""
+    known = _names(reference)
+    parts = [*(name for name in pairs if name in known), *(name for name in _HARMONICS if "sh" in pairs)]
+    found = {name: _array(reference, standard_error(name), "b") for name in parts if standard_error(name) in known}
+    made = _with_harmonics({name: (values, values) for name, values in found.items()})
+    return {name: values for name, (values, _) in made.items() if name in pairs}
+
+
 def size_of(pairs: Pairs) -> tuple[int, int]:
     """(width, height)."""
     height, width = next(iter(pairs.values()))[0].shape[:2]
@@ -35,7 +45,7 @@ def size_of(pairs: Pairs) -> tuple[int, int]:
 
 
 def label(one: Buffers, otherwise: str) -> str:
-    """What made it, where it says so."""
+    """The name of the module that made it, if it is a frame."""
     return str(one.info.get("module", otherwise)) if isinstance(one, Frame) else otherwise
 
 
@@ -68,13 +78,13 @@ def _chosen(a: Buffers, b: Buffers, wanted: Iterable[str] | str | None) -> list[
     if not shared:
         raise ParameterError(f"no common buffer: a has {', '.join(in_a) or 'none'}; b has {', '.join(in_b) or 'none'}")
     if wanted is None:
-        results = [name for name in shared if name not in (*SURFACES, "standard_error")]
+        results = [name for name in shared if name not in (*SURFACES, "rays") and not name.endswith("standard_error")]
         if not results:
             raise ParameterError(f"no common result, only {', '.join(shared)}: name them in `buffers` to compare those")
         return sorted(results, key=lambda name: name != "visibility")
     chosen = [wanted] if isinstance(wanted, str) else list(wanted)
     if not chosen:
-        raise ParameterError(f"buffers = [] asks for nothing; both have {', '.join(shared)}")
+        raise ParameterError(f"buffers = [] is empty; both have {', '.join(shared)}")
     chosen = [part for name in chosen for part in (_HARMONICS if name == "sh" and "sh" not in shared else (name,))]
     for name in chosen:
         if name not in shared:
@@ -109,7 +119,7 @@ def _shape(array: np.ndarray) -> str:
 
 
 def _with_harmonics(pairs: Pairs) -> Pairs:
-    """sh0 .. sh3, where all of them are there, as `sh`, the 16 coefficients, and its bands."""
+    """Pairs where sh0 .. sh3, if all four exist, are replaced by `sh`, the 16 coefficients, and by its bands."""
     parts = [pairs[name] for name in _HARMONICS if name in pairs]
     if len(parts) < len(_HARMONICS) or any(one.shape[2] != 4 for one, _ in parts):
         return pairs
@@ -129,14 +139,14 @@ def _view_z(one: Buffers, who: str, size: tuple[int, int]) -> np.ndarray | None:
 
 
 def _surface(depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray:
-    """(H, W) bool: where all of the depths are of a surface."""
+    """(H, W) bool: the pixels where every depth is a surface's."""
     drawn = [np.isfinite(view_z) for view_z in depths] or [np.ones(size[::-1], bool)]
     mask = np.all(drawn, axis=0)
     if not mask.any():
         raise ParameterError(f"nothing to compare: all {size[0]}×{size[1]} pixels are background in viewZ")
     if differing := int((np.any(drawn, axis=0) & ~mask).sum()):
         warnings.warn(
-            f"a and b do not show the same surfaces: {differing} pixels are background in one of them, and left out",
+            f"a and b do not show the same surfaces: {differing} pixels, background in one of them, are left out",
             Notice,
             stacklevel=4,
         )
@@ -144,7 +154,7 @@ def _surface(depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray:
 
 
 def _reach_px(a: Buffers, b: Buffers, depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray | float:
-    """The radius that one of the frames was made with, in pixels at each pixel's distance (H, W); else a set number."""
+    """The radius of the frames, in pixels at each pixel's distance (H, W); without a radius, one number of pixels."""
     for one in (a, b):
         if isinstance(one, Frame) and depths:
             radius, camera = one.info.get("parameters", {}).get("radius"), one.info.get("camera")

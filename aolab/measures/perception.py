@@ -14,11 +14,11 @@ _SIGMA, _TRUNCATE = 1.5, 3.5  # its window, 11 × 11: 3.5 sigma reach 5 pixels
 _ACES = 0.36 * 2.51, 0.6 * 0.03, 0.36 * 2.43, 0.6 * 0.59, 0.14
 _BRIGHT = 0.85  # exposures put the reference's highest and median luminance there (its section 3)
 _REC_709 = np.array([0.2126, 0.7152, 0.0722])
-_STOPS = 8.0  # at most: where most of the image is black its median says nothing, and a stop costs a whole FLIP
+_STOPS = 8.0  # at most: the median of a mostly black image is arbitrary, and each stop costs a whole FLIP
 
 
 def ssim_map(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """(H, W): structural similarity of pictures (H, W, C) in [0, 1], the mean of the channels; 1 where alike.
+    """(H, W): structural similarity of pictures (H, W, C) in [0, 1], the mean of the channels; 1 where they are equal.
 
     Wang et al. 2004, eq. 13, in a Gaussian window; at the image's edge the picture is mirrored.
     """
@@ -37,8 +37,8 @@ def ssim_map(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 def flip_map(a: np.ndarray, b: np.ndarray, *, hdr: bool) -> np.ndarray:
     """(H, W) in [0, 1]: FLIP of the test picture `a` against the reference `b`, (H, W, 1 or 3), at 67 pixels a degree.
 
-    LDR-FLIP (Andersson et al. 2020) takes sRGB in [0, 1]; HDR-FLIP (2021) linear radiance from 0 on, and is the
-    greatest difference over a range of exposures.
+    LDR-FLIP (Andersson et al. 2020) compares sRGB in [0, 1]. HDR-FLIP (2021) compares linear radiance from 0 on, and is
+    the greatest difference over a range of exposures.
     """
     flip_evaluator = need("flip", ", or flip=False")
     test, reference = (
@@ -54,7 +54,7 @@ def flip_map(a: np.ndarray, b: np.ndarray, *, hdr: bool) -> np.ndarray:
 def exposures(reference: np.ndarray) -> dict[str, float | int]:
     """HDR-FLIP's range of exposures, its own rule, for linear (H, W, 3).
 
-    flip-evaluator ends the process for a black reference and takes any number of stops: here they are bounded.
+    flip-evaluator ends the process for a black reference, and its number of stops is unbounded; here it is bounded.
     """
     luminance = reference @ _REC_709
     highest = float(luminance.max())
@@ -63,6 +63,6 @@ def exposures(reference: np.ndarray) -> dict[str, float | int]:
     median = max(float(np.median(luminance)), highest / 2**_STOPS)
     a, b, c, d, e = _ACES
     a, b, c = a - _BRIGHT * c, b - _BRIGHT * d, -_BRIGHT * e
-    white = (-b + math.sqrt(b * b - 4 * a * c)) / (2 * a)  # is shown as _BRIGHT
+    white = (-b + math.sqrt(b * b - 4 * a * c)) / (2 * a)  # the luminance that is displayed as _BRIGHT
     start, stop = math.log2(white / highest), math.log2(white / median)
     return {"startExposure": start, "stopExposure": stop, "numExposures": max(2, math.ceil(stop - start))}

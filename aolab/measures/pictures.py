@@ -1,4 +1,4 @@
-"""Pictures of an error, with a scale that a person can read: result, reference, error, colour bar."""
+"""Pictures of an error, with a scale: result, reference, error, colour bar."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ try:
 except ImportError as error:
     raise missing("pictures", error) from error
 
-# zero in the middle and white, more is red; or, for magnitudes, perceptually uniform from dark to bright
+# signed: white is zero, red is more; magnitudes: perceptually uniform from dark to bright
 SIGNED, MAGNITUDE = "RdBu_r", "viridis"
-BACKGROUND = "0.6"  # grey: in neither map
+BACKGROUND = "0.6"  # a grey that neither map contains
 DPI = 100
 PANEL_WIDTH = 260, 480  # pixels: smaller pictures are enlarged by whole numbers, larger ones reduced
 MARGIN, HEAD, BAR, TEXT, PER_LINE = 14, 46, 92, 215, 17  # pixels
@@ -45,9 +45,9 @@ def comparison_picture(one: BufferComparison, names: tuple[str, str], limit: flo
 def draw(
     lines: Sequence[Line], title: str, names: tuple[str, str] = ("result", "truth"), limit: float | None = None
 ) -> Image.Image:
-    """Lines of result, reference, error and text, under one `title`, with one scale, whose colour bar is on the right.
+    """Lines of result, reference, error and text under one `title`; all errors have one scale, its bar on the right.
 
-    All of `lines` show the same buffer. `limit` as in `Comparison.picture`, over all lines.
+    All `lines` show the same buffer. `limit` is that of `Comparison.picture`, over all lines.
     """
     height, width = lines[0].comparison.foreground.shape
     scale = max(1, -(-PANEL_WIDTH[0] // width)) if width < PANEL_WIDTH[0] else min(1, PANEL_WIDTH[1] / width)
@@ -88,7 +88,7 @@ def draw(
 
 
 def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> tuple[ScalarMappable, float]:
-    """The colours of errors, and the largest magnitude of one."""
+    """The colours of errors, and the largest magnitude of an error."""
     magnitudes = np.concatenate([np.abs(one.error[np.isfinite(one.error)]) for one in comparisons])
     largest = float(magnitudes.max(initial=0))
     if limit is None:
@@ -114,8 +114,8 @@ def _colored(error: np.ndarray, mappable: ScalarMappable) -> np.ndarray:
 
 
 def _seen(one: BufferComparison) -> list[np.ndarray]:
-    """Result and reference (H, W, 3) uint8: their pictures, or where they make none, their three channels or the first,
-    as far as the reference ranges."""  # fmt: skip
+    """Result and reference (H, W, 3) uint8: their pictures. Kinds without a picture show their three channels, or the
+    first one, over the range of the reference."""  # fmt: skip
     shown = [values if values.shape[2] == 3 else values[..., :1] for values in (one.result, one.reference)]
     if one.kind.picture:
         shown = [picture(np.nan_to_num(values), one.kind) for values in shown]

@@ -1,4 +1,4 @@
-"""What a buffer holds: its unit, and the picture of it on which PSNR, SSIM and FLIP are defined."""
+"""The kinds of buffers: the unit, and the picture on which PSNR, SSIM and FLIP are defined."""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -11,11 +11,11 @@ from ..truth.picture import shown
 
 @dataclass(frozen=True)
 class Kind:
-    """A kind of quantity, its `unit`, and how it is looked at.
+    """A kind of quantity: its `unit`, the picture made of it, and the definition of a pixel's error.
 
-    `picture` is what PSNR, SSIM and FLIP compare, values in [0, 1]: "direct", the values themselves as a screen would
-    show them; "tone mapped", linear radiance as a render shows itself (filmic, exposure 1, sRGB), for which FLIP is
-    HDR-FLIP of the linear values; None where they make no picture, and PSNR, SSIM and FLIP have no meaning.
+    PSNR, SSIM and FLIP compare the `picture`, values in [0, 1]: "direct", the values themselves; "tone mapped", linear
+    radiance as a render displays it (filmic, exposure 1, sRGB), for which FLIP is HDR-FLIP of the linear values; None,
+    for which PSNR, SSIM and FLIP have no meaning.
     `error` is a pixel's error: "signed", the mean difference of its channels; "angle" between directions; "norm" of the
     difference, which for coefficients is the root of the integral of the squared difference (Parseval).
     """
@@ -46,7 +46,7 @@ def kind_of(name: str) -> Kind:
 
 
 def picture(values: np.ndarray, kind: Kind) -> np.ndarray:
-    """(H, W, C) float64 in [0, 1]: what PSNR and SSIM look at. `values` (H, W, C), of a kind with a picture."""
+    """(H, W, C) float64 in [0, 1]: the picture for PSNR and SSIM of `values` (H, W, C), of a kind with a picture."""
     if kind.picture == "tone mapped":
         return shown(np.maximum(values, 0)) / 255.0
     return np.clip(values, 0, 1).astype(np.float64)

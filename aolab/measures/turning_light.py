@@ -1,13 +1,14 @@
-"""Relighting error: how wrong a result gets as the light turns around the scene."""
+"""Relighting error: the error of a result while the light turns around the scene."""
 
 import json
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..errors import ParameterError
+from ..errors import Notice, ParameterError
 from ..gl.texture import Size
 from ..loading import load
 from ..modules import MODULES, Module, find
@@ -17,7 +18,8 @@ from ..scene.camera import Camera
 from ..scene.environment import Environment
 from ..table import table
 from ..truth import reference
-from .comparison import compare
+from .buffer import NOISY
+from .comparison import measured
 from .metrics import Measures
 from .pairing import Buffers
 
@@ -35,8 +37,13 @@ class Relighting:
 
     @property
     def rmse(self) -> float:
-        """Over all environments together."""
+        """The root mean square error over all environments together."""
         return float(np.sqrt(np.mean([one.rmse**2 for one in self.measures])))
+
+    @property
+    def noise(self) -> float:
+        """The root mean square of the reference's standard error over all environments; NaN where it is not known."""
+        return float(np.sqrt(np.mean([one.noise**2 for one in self.measures])))
 
     @property
     def worst(self) -> int:
@@ -72,7 +79,8 @@ def relight(
 ) -> Relighting:
     """Compare `buffer` of `result` and `truth`, functions of the environment, under `k` equal turns of it about +y.
 
-    Raises `ParameterError` where turning changes nothing: the environment is the same all around.
+    A `Notice` tells if the truth's own noise is more than a third of the error. Raises `ParameterError` for an
+    environment that is the same all around: turning it changes nothing.
     """
     if not isinstance(k, int) or k < 1:
         raise ParameterError(f"k = {k!r} is not a whole number of rotations from 1 on")
@@ -86,12 +94,20 @@ def relight(
     with progress_bar("rotations", k) as bar:
         for angle in degrees:
             turned = environment.rotated(angle)
-            one = compare(result(turned), truth(turned), buffer, flip=False)[buffer]
+            one = measured(result(turned), truth(turned), buffer, flip=False)[buffer]
             scale = float(np.sqrt(np.mean(one.reference[one.foreground].astype(np.float64) ** 2)))
             measures.append(one.measures["all"])
             relative.append(one.rmse / scale if scale > 0 else float("nan"))
             bar.update()
-    return Relighting(buffer, degrees, measures, relative)
+    found = Relighting(buffer, degrees, measures, relative)
+    if found.noise > NOISY * found.rmse > 0:
+        warnings.warn(
+            f"relighting error of '{buffer}': the reference's own standard error, {found.noise:.2g}, is "
+            f"{found.noise / found.rmse:.0%} of the RMSE, {found.rmse:.2g}; give the reference more `rays`",
+            Notice,
+            stacklevel=2,
+        )
+    return found
 
 
 def relighting_error(
@@ -109,10 +125,10 @@ def relighting_error(
     like: str | Module | type[Module] | None = None,
     **parameters: object,
 ) -> Relighting:
-    """`relight` of a module against the reference that means the same, in the scene's environment or another one.
+    """`relight` of a module against the reference that answers its question, in the scene's environment or another.
 
-    The noise of `rays` rays is part of the error. `parameters` are the module's; so are the truth's radius and falloff,
-    unless they are `like` another one's.
+    The noise of `rays` rays is part of the error. `parameters` are the module's. The truth answers the module's own
+    question, or that of `like`.
     """
     scene = load(scene)
     method = find(module, MODULES, **parameters).resolved(scene)

@@ -17,6 +17,7 @@ from .names import check_outputs, check_parameters
 from .occluders import OCCLUDERS, OccluderKind
 from .parameters import AUTO, Choice, Parameters, is_word, label, parameter, unknown
 from .passes import AMBIENT, DIRECT, Pass, reflect
+from .question import Question
 from .readable import Readable
 
 if TYPE_CHECKING:
@@ -285,6 +286,11 @@ class Module(Parameters):
     def samples(self, seed: int) -> dict[str, bytes]:
         """Uniform arrays that depend on the seed; another seed is another sample set."""
         return {}
+
+    def question(self) -> Question:
+        """The quantity that a `resolved` module approximates: `aolab.reference(scene, like=module)` computes it."""
+        values = self.model_dump()
+        return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True)
 
     def resolved(self, scene: Scene) -> Self:
         """The same with every `auto` made a number for this scene."""

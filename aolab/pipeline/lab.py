@@ -220,6 +220,7 @@ class Lab:
             "scene": scene.source,
             "module": module.name or type(module).__name__,
             "parameters": module.model_dump(),
+            "question": asdict(module.question()),
             "camera": asdict(view.camera),
             "size": list(view.size),
             "seed": frame.seeds.start,

@@ -26,8 +26,12 @@ def direction_from_uv(uv: np.ndarray) -> np.ndarray:
 
 
 def uv_from_direction(directions: np.ndarray) -> np.ndarray:
-    """Equirectangular uv (..., 2) in [0, 1] of world-space unit `directions` (..., 3); `environmentUv` in GLSL."""
-    x, y, z = np.moveaxis(np.asarray(directions, np.float64), -1, 0)
+    """Equirectangular uv (..., 2) in [0, 1] of world-space unit `directions` (..., 3); `environmentUv` in GLSL.
+
+    Single precision stays single precision.
+    """
+    precision = np.float32 if getattr(directions, "dtype", None) == np.float32 else np.float64
+    x, y, z = np.moveaxis(np.asarray(directions, precision), -1, 0)
     polar = np.arctan2(np.hypot(x, z), y)  # acos(y), but precise near the poles
     return np.stack([0.5 + np.arctan2(x, -z) / (2 * np.pi), polar / np.pi], axis=-1)
 

@@ -64,7 +64,9 @@ def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Placed meshes, lights, an environment and a camera. A missing camera frames the scene; without lights and environment there is a default sky and sun.
+    """Placed meshes, lights, an environment and a camera. A missing camera frames the scene.
+
+    Without lights and environment there is a default sky and sun.
 
     `source` is what `aolab.load` was given, where that was a name or a file; it makes an image reproducible.
     """

@@ -1,14 +1,14 @@
 """Arrays kept on disk by the content that they were computed from."""
 
 import hashlib
-import io
 import json
 import os
 import warnings
 import zipfile
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import asdict, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -21,52 +21,76 @@ from ..output import replacing
 from ..scene.scene import Scene
 
 BUDGET = 2_000_000_000  # bytes; the entries used longest ago go first
+PACKAGE = Path(__file__).parents[1]
+DAMAGED = (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile)  # what an unreadable entry raises
 
 
 def folder() -> Path:
-    """Where references are kept: `AOLAB_CACHE`, else the platform's cache folder. May be deleted at any time."""
+    """The folder of the references: in `AOLAB_CACHE`, else in the platform's cache folder. It may always be deleted."""
     root = os.environ.get("AOLAB_CACHE") or platformdirs.user_cache_dir("aolab")
     return Path(root) / "references"
 
 
 def key(scene: Scene, **settings: object) -> str:
-    """A name that changes with anything the result depends on: the scene's content, `settings`, and our own code."""
+    """A name that changes with all that a result depends on: the scene's content, `settings`, and aolab's own code."""
     digest = hashlib.sha256()
     for part in _scene_parts(scene):
         digest.update(part if isinstance(part, bytes) else np.ascontiguousarray(part).tobytes())
         digest.update(b"|")
     digest.update(json.dumps(settings, sort_keys=True, default=str).encode())
-    for file in sorted([*Path(__file__).parent.glob("*.py"), *(paths.glsl() / "pipeline").glob("gbuffer.*")]):
+    digest.update(code(PACKAGE).encode())
+    for file in sorted((paths.glsl() / "pipeline").glob("gbuffer.*")):  # shaders are compiled anew when they change
         digest.update(file.read_bytes())
     return digest.hexdigest()
 
 
-def load(name: str) -> dict[str, np.ndarray] | None:
-    """The arrays stored under `name`, or None. A damaged entry counts as none, and a `Notice` says so."""
+@cache
+def code(package: Path) -> str:
+    """A digest of all Python files of `package`, any of which a result may depend on.
+
+    The files are read once a process: what runs is what was imported, not what was edited since.
+    """
+    digest = hashlib.sha256()
+    for file in sorted(package.rglob("*.py")):
+        digest.update(str(file.relative_to(package)).encode())
+        digest.update(file.read_bytes())
+    return digest.hexdigest()
+
+
+def load(name: str, wanted: Iterable[str]) -> dict[str, np.ndarray]:
+    """Those of the `wanted` arrays that are stored under `name`. A damaged entry holds none, with a `Notice`."""
     path = _path(name)
     try:
-        with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
-            arrays = {key: file[key] for key in file.files}
+        arrays = _read(path, wanted)
     except (FileNotFoundError, NotADirectoryError):
-        return None
-    except (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile) as error:
-        warnings.warn(f"the cached reference {path.name} is damaged and is made anew: {error}", Notice, stacklevel=3)
-        return None
+        return {}
+    except DAMAGED as error:
+        warnings.warn(f"the cached reference {path.name} is damaged and is made anew: {error}", Notice, stacklevel=4)
+        return {}
     with suppress(OSError):
         os.utime(path)  # used just now
     return arrays
 
 
-def store(name: str, arrays: dict[str, np.ndarray]) -> None:
-    """Keep `arrays` under `name`, replacing atomically. Failing, it only says so, in a `Notice`."""
+def store(name: str, arrays: Mapping[str, np.ndarray]) -> None:
+    """Add `arrays` to those under `name`, replacing the file atomically. A failure is a `Notice`, no error."""
     path = _path(name)
+    kept: dict[str, np.ndarray] = {}
+    with suppress(*DAMAGED):
+        kept = _read(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as file:
-            np.savez(file, **arrays)  # type: ignore[arg-type]
+            np.savez(file, **{**kept, **arrays})  # type: ignore[arg-type]
         _trim(path.parent)
     except (OSError, FileError) as error:
-        warnings.warn(f"the reference could not be cached: {error}; set AOLAB_CACHE", Notice, stacklevel=3)
+        warnings.warn(f"the reference could not be cached: {error}; set AOLAB_CACHE", Notice, stacklevel=4)
+
+
+def _read(path: Path, wanted: Iterable[str] | None = None) -> dict[str, np.ndarray]:
+    """The arrays of an entry, or the `wanted` ones. Raises one of `DAMAGED`."""
+    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+        return {one: file[one] for one in (file.files if wanted is None else wanted) if one in file.files}
 
 
 def _path(name: str) -> Path:
@@ -74,7 +98,7 @@ def _path(name: str) -> Path:
 
 
 def _trim(root: Path) -> None:
-    """Delete what was used longest ago beyond the budget, halves of files left by a killed process among it."""
+    """Delete the files used longest ago, unfinished ones included, until the rest fits the budget."""
     entries = sorted(((file.stat(), file) for file in root.iterdir()), key=lambda entry: -entry[0].st_mtime)
     total = 0
     for stat, file in entries:

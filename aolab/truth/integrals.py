@@ -1,99 +1,21 @@
 """What is integrated over the hemisphere, buffer by buffer: each a mean over cosine-distributed rays."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Literal
 
 import numpy as np
 
+from ..maths.fading import is_hard, reach
 from ..maths.harmonics import basis
-from ..maths.sampling import influence
-from ..scene.environment import Environment
-from ..scene.lights import Light
-from .casters import Hits
-from .hemisphere import frames, strata
-from .lighting import environment_radiance, irradiance
+from .hemisphere import WHOLE, Stratum, frames, strata
+from .lamps import from_lamps
+from .lighting import irradiance
+from .moments import Moments, Pair
 from .points import Points
-from .world import World
+from .sample import Randoms, Sample, Setting
+from .senders import sent
 
-Measure = Literal["classical", "linear", "sqrt", "exponential"]
-
-
-@dataclass(frozen=True)
-class Setting:
-    """What the integrals depend on besides the surface. `radius` may be infinite; see `reference` for the others."""
-
-    world: World
-    environment: Environment
-    lights: tuple[Light, ...]
-    radius: float
-    falloff: float
-    measure: Measure
-    bounces: int
-
-    @property
-    def limit(self) -> float:
-        """How far rays go, scene units: nothing beyond it counts."""
-        return np.inf if self.measure == "exponential" else self.radius
-
-
-def fuzzy_openness(distance: np.ndarray, measure: Measure) -> np.ndarray:
-    """μ of Umenhoffer et al. 2009, figure 1, `distance` in radii; `exponential` takes σ = 1/radius and never ends."""
-    if measure == "exponential":
-        return 1 - np.exp(-distance)
-    return {"classical": np.floor, "linear": np.positive, "sqrt": np.sqrt}[measure](np.minimum(distance, 1))
-
-
-def in_radii(hits: Hits, radius: float) -> np.ndarray:
-    """(n,): distances as multiples of the radius, infinite where nothing was hit, also when the radius is."""
-    return np.divide(hits.distance, np.float32(radius), out=hits.distance.copy(), where=hits.triangle >= 0)
-
-
-@dataclass
-class Sample:
-    """One ray a point: what the integrands look at. `hits` is None where only `open` was asked for."""
-
-    setting: Setting
-    points: Points
-    directions: np.ndarray  # (n, 3) float32, world space, unit
-    open: np.ndarray  # (n,) float32: 1 - influence of what was hit
-    hits: Hits | None
-    random: np.random.Generator
-
-    @property
-    def first(self) -> Hits:
-        assert self.hits is not None
-        return self.hits
-
-    @cached_property
-    def blocked(self) -> np.ndarray:
-        """Indices of the rays that hit something nearer than the setting's limit."""
-        return np.flatnonzero(self.first.triangle >= 0)
-
-    @cached_property
-    def hit_albedo(self) -> np.ndarray:
-        """(blocked, 3): a(y)."""
-        return self.setting.world.albedo(*(part[self.blocked] for part in self.first[1:]))
-
-    @cached_property
-    def hit_surface(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and normals (blocked, 3) of what was hit, on the side that was hit."""
-        b = self.blocked
-        return self.setting.world.hit_surface(
-            self.points.position[b], self.directions[b], self.first.distance[b], self.first.triangle[b]
-        )
-
-    @cached_property
-    def openness(self) -> np.ndarray:
-        """(n,): μ(d)."""
-        return fuzzy_openness(in_radii(self.first, self.setting.radius), self.setting.measure)
-
-    def at_hits(self, values: np.ndarray) -> np.ndarray:
-        """(n, 3), 0 where nothing was hit."""
-        full = np.zeros_like(self.directions)
-        full[self.blocked] = values
-        return full
+RAYS_A_SKY_SAMPLE = 8  # one ray towards the sky's bright part for so many over the hemisphere
 
 
 def _open(sample: Sample) -> np.ndarray:
@@ -101,7 +23,7 @@ def _open(sample: Sample) -> np.ndarray:
 
 
 def _environment(sample: Sample) -> np.ndarray:
-    return sample.open[:, None] * environment_radiance(sample.setting.environment, sample.directions)
+    return sample.open[:, None] * sample.setting.sky.even(sample.directions)
 
 
 def _open_direction(sample: Sample) -> np.ndarray:
@@ -113,49 +35,31 @@ def _harmonics(sample: Sample) -> np.ndarray:
 
 
 def _fuzzy(sample: Sample) -> np.ndarray:
-    return sample.openness[:, None]
+    return sample.measured[:, None]
 
 
 def _closed_albedo(sample: Sample) -> np.ndarray:
-    return sample.at_hits((1 - sample.openness[sample.blocked, None]) * sample.hit_albedo)
-
-
-def _sender(sample: Sample) -> np.ndarray:
-    """Radiance of what blocks, lit by the lights and by the environment; as much of it as blocks."""
-    positions, normals = sample.hit_surface
-    light = irradiance(sample.setting.world, sample.setting.lights, positions, normals) / np.float32(np.pi)
-    light += _skylight(sample, positions, normals)
-    return sample.at_hits((1 - sample.open[sample.blocked, None]) * sample.hit_albedo * light)
-
-
-def _skylight(sample: Sample, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """The environment's irradiance / π at `positions` (n, 3), by one ray each, however far it goes."""
-    setting = sample.setting
-    if not len(positions) or not setting.environment.radiance.any():
-        return np.zeros_like(positions)
-    directions = next(strata(2)).directions(frames(normals), sample.random)
-    open = setting.world.first_hit(positions, directions, np.inf).triangle < 0
-    return np.where(open[:, None], environment_radiance(setting.environment, directions), np.float32(0))
+    return sample.at_hits((1 - sample.measured[sample.blocked, None]) * sample.hit_albedo)
 
 
 def _path(sample: Sample) -> np.ndarray:
-    """Sky of radiance 1 reached by a path whose segments within the radius meet surfaces; the first albedo left out.
+    """(n, 3): a sky of radiance 1 at the end of a path, times the albedos of its reflections but the first.
 
-    A path still closed after the last bounce carries nothing.
+    Segments longer than the radius see the sky. A path that is still closed after the last bounce carries nothing.
     """
-    setting = sample.setting
-    near = sample.first.distance[sample.blocked] < setting.radius
+    setting, random = sample.setting, sample.randoms["path"]
+    radius = setting.question.reach
+    near = sample.first.distance[sample.blocked] < radius
     arrived = np.ones_like(sample.directions)
     rays = sample.blocked[near]
     throughput = sample.hit_albedo[near]
     positions, normals = (part[near] for part in sample.hit_surface)
     arrived[rays] = 0
-    whole = next(strata(2))
-    for _ in range(setting.bounces):
+    for _ in range(setting.question.bounces):
         if not len(rays):
             break
-        directions = whole.directions(frames(normals), sample.random)
-        hits = setting.world.first_hit(positions, directions, setting.radius)
+        directions = WHOLE.directions(frames(normals), random, setting.covered)
+        hits = setting.world.first_hit(positions, directions, radius)
         closed = hits.triangle >= 0
         arrived[rays[~closed]] = throughput[~closed]
         albedo = setting.world.albedo(*(part[closed] for part in hits[1:]))
@@ -168,11 +72,15 @@ def _path(sample: Sample) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Integrand:
-    """`evaluate(sample)` gives (n, channels); with `needs_hits`, occlusion alone is not enough."""
+    """`evaluate(sample)` returns (n, channels). `measured`: it weights by the question's measure, not its falloff.
+
+    `needs_hits`: it looks at what was hit, so that occlusion alone is not enough.
+    """
 
     channels: int
     evaluate: Callable[[Sample], np.ndarray]
     needs_hits: bool = False
+    measured: bool = False
 
 
 INTEGRANDS = {
@@ -180,41 +88,80 @@ INTEGRANDS = {
     "environment": Integrand(3, _environment),
     "open_direction": Integrand(3, _open_direction),
     "harmonics": Integrand(16, _harmonics),
-    "fuzzy": Integrand(1, _fuzzy, needs_hits=True),
-    "closed_albedo": Integrand(3, _closed_albedo, needs_hits=True),
-    "sender": Integrand(3, _sender, needs_hits=True),
+    "fuzzy": Integrand(1, _fuzzy, needs_hits=True, measured=True),
+    "closed_albedo": Integrand(3, _closed_albedo, needs_hits=True, measured=True),
+    "sender": Integrand(3, sent, needs_hits=True),
     "path": Integrand(3, _path, needs_hits=True),
 }
 
 
 def integrate(
-    setting: Setting, points: Points, rays: int, names: Iterable[str], random: np.random.Generator
-) -> dict[str, np.ndarray]:
-    """The mean of each integrand over `rays` rays a point, (n, channels) and `standard_error`, that of `open`."""
-    integrands: Mapping[str, Integrand] = {name: INTEGRANDS[name] for name in names}
-    needs_hits = setting.falloff > 0 or any(integrand.needs_hits for integrand in integrands.values())
-    sums = {name: np.zeros((len(points), one.channels), np.float32) for name, one in integrands.items()}
-    squared_differences = np.zeros(len(points), np.float32)
+    setting: Setting, points: Points, names: Collection[str], crosses: Iterable[Pair], randoms: Randoms
+) -> Moments:
+    """The moments of the integrals `names` over `setting.rays` rays a point, with the covariances of `crosses`.
+
+    They are those of `INTEGRANDS`, and `light`, the lights' irradiance, which is exact.
+    """
+    integrands = {name: INTEGRANDS[name] for name in names if name != "light"}
+    channels = {name: one.channels for name, one in integrands.items()}
+    moments = Moments(len(points), channels | ({"light": 3} if "light" in names else {}), crosses)
+    moments.counted(setting.rays)
+    if "light" in names:
+        moments.exact("light", irradiance(setting.world, setting.lights, points.position, points.normal))
+    if not integrands:
+        return moments
+    cast = _Cast(setting, integrands)
     axes = frames(points.normal)
-    for stratum in strata(rays):
-        opens = []
-        for _ in range(2):
-            sample = _cast(setting, points, stratum.directions(axes, random), needs_hits, random)
-            opens.append(sample.open)
-            for name, integrand in integrands.items():
-                sums[name] += integrand.evaluate(sample)
-        squared_differences += (opens[0] - opens[1]) ** 2
-    means = {name: total / np.float32(rays) for name, total in sums.items()}
-    return {**means, "standard_error": np.sqrt(squared_differences)[:, None] / np.float32(rays)}
+    for stratum in strata(setting.rays):
+        pair = (cast(points, stratum.directions(axes, randoms["rays"], setting.covered), randoms) for _ in range(2))
+        moments.add(*({name: one.evaluate(sample) for name, one in integrands.items()} for sample in pair))
+    if "environment" in integrands and setting.sky.has_bright_part:
+        for one, other in _bright_sky(setting, points, randoms["sky"]):
+            moments.add({"environment": one}, {"environment": other})
+    if "sender" in integrands:
+        for one, other in from_lamps(setting, points, randoms["lamps"]):
+            moments.add({"sender": one}, {"sender": other})
+    return moments
 
 
-def _cast(
-    setting: Setting, points: Points, directions: np.ndarray, needs_hits: bool, random: np.random.Generator
-) -> Sample:
-    hits = None
-    if needs_hits:
-        hits = setting.world.first_hit(points.position, directions, setting.limit)
-        open = 1 - influence(in_radii(hits, setting.radius) ** 2, setting.falloff)
-    else:
-        open = (~setting.world.occluded(points.position, directions, setting.limit)).astype(np.float32)
-    return Sample(setting, points, directions, open, hits, random)
+class _Cast:
+    """Rays over the hemisphere, as far as the integrands look, with or without knowledge of what they hit."""
+
+    def __init__(self, setting: Setting, integrands: Mapping[str, Integrand]) -> None:
+        question = setting.question
+        measured = any(one.measured for one in integrands.values())
+        self._setting = setting
+        self._limit = max(setting.limit, reach(question.measure, question.reach) if measured else 0)
+        self._needs_hits = not is_hard(question.falloff) or any(one.needs_hits for one in integrands.values())
+
+    def __call__(self, points: Points, directions: np.ndarray, randoms: Randoms) -> Sample:
+        hits = None
+        if self._needs_hits:
+            hits = self._setting.world.first_hit(points.position, directions, self._limit)
+            open = self._setting.open(hits.distance)
+        else:
+            open = self._setting.open_along(points.position, directions)
+        return Sample(self._setting, points, directions, open, hits, randoms)
+
+
+def _bright_sky(
+    setting: Setting, points: Points, random: np.random.Generator
+) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Pairs of samples (n, 3) of the sky's bright part, to be added to those of the rays over the hemisphere."""
+    pairs = max(1, setting.rays // (2 * RAYS_A_SKY_SAMPLE))
+    for i in range(pairs):
+        stratum = Stratum((i / pairs, 0.0), (1 / pairs, 1.0))
+        one, other = (_towards_bright(setting, points, stratum, random) for _ in range(2))
+        scale = np.float32(setting.rays / (2 * pairs))
+        yield one * scale, other * scale
+
+
+def _towards_bright(setting: Setting, points: Points, stratum: Stratum, random: np.random.Generator) -> np.ndarray:
+    """(n, 3): the bright part's radiance in one direction a point, where that is open, × cosθ/π over its density."""
+    light = np.zeros((len(points), 3), np.float32)
+    directions, radiance = setting.sky.towards_bright(*stratum.square(len(points), random))
+    cosine = (directions * points.normal).sum(axis=1)
+    rising = np.flatnonzero((cosine > 0) & (cosine**2 >= 1 - setting.covered))
+    open = setting.open_along(points.position[rising], directions[rising])
+    light[rising] = (open * cosine[rising])[:, None] * radiance[rising] / np.float32(np.pi * setting.covered)
+    return light

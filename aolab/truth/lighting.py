@@ -1,26 +1,34 @@
-"""Lights with ray-traced, hard shadows, and the environment: twins of glsl/lib/light.glsl and environment.glsl."""
+"""Lights with ray-traced, hard shadows: the twin of glsl/lib/light.glsl."""
 
 from collections.abc import Iterable
 
 import numpy as np
 
-from ..scene.environment import Environment, uv_from_direction
 from ..scene.lights import DirectionalLight, Light, SpotLight
-from .world import World, bilinear
+from .world import World
 
 
 def irradiance(world: World, lights: Iterable[Light], positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(n, 3) float32: what arrives from the lights at lifted `positions` with unit `normals`, both (n, 3)."""
+    """(n, 3) float32: the lights' irradiance at lifted `positions` with unit `normals`, both (n, 3)."""
     total = np.zeros_like(positions)
     for light in lights:
-        towards, distance, share = towards_light(light, positions, world.centre)
-        share = share * np.maximum((normals * towards).sum(axis=1), 0)
-        lit = np.flatnonzero(share > 0)
-        if light.shadow and len(lit):
-            lit = lit[~world.occluded(positions[lit], towards[lit], distance[lit])]
-        color = light.irradiance if isinstance(light, DirectionalLight) else light.intensity
-        total[lit] += share[lit, None] * np.asarray(color, np.float32)
+        total += received(world, light, positions, normals)[:, None] * color(light)
     return total
+
+
+def received(world: World, light: Light, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
+    """(n,) float32: the irradiance from `light` as a share of its `color`, 0 in its shadow."""
+    towards, distance, share = towards_light(light, positions, world.centre)
+    share *= np.maximum((normals * towards).sum(axis=1), 0)
+    lit = np.flatnonzero(share > 0)
+    if light.shadow and len(lit):
+        share[lit[world.occluded(positions[lit], towards[lit], distance[lit])]] = 0
+    return share
+
+
+def color(light: Light) -> np.ndarray:
+    """(3,) float32: irradiance of a directional light, else intensity."""
+    return np.asarray(light.irradiance if isinstance(light, DirectionalLight) else light.intensity, np.float32)
 
 
 def towards_light(light: Light, positions: np.ndarray, centre: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -43,11 +51,3 @@ def towards_light(light: Light, positions: np.ndarray, centre: np.ndarray) -> tu
         in_cone = np.clip((-(towards @ axis) - outer) / (inner - outer), 0, 1)
         share = share * in_cone**2
     return towards, distance, share.astype(np.float32)
-
-
-def environment_radiance(environment: Environment, directions: np.ndarray) -> np.ndarray:
-    """(n, 3) float32: the map in world-space `directions` (n, 3), bilinear, as the GPU reads it."""
-    if (environment.radiance == environment.radiance[0, 0]).all():  # constant: nothing to look up
-        return np.broadcast_to(environment.radiance[0, 0], directions.shape)
-    u, v = uv_from_direction(directions).T
-    return bilinear(environment.radiance, u, v, repeat_rows=False)

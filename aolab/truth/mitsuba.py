@@ -6,9 +6,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterable
-from dataclasses import asdict
 from pathlib import Path
-from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -16,15 +14,14 @@ import numpy as np
 from ..errors import Error, ParameterError, suggestion
 from ..extras import install_command
 from ..loading import load
-from ..pipeline.api import shared_lab
+from ..modules.question import Question
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 from ..scene.view import Size, View
-from ..version import __version__
-from . import cache as disk
 from .mitsuba_scene import Description, Image, describe
 from .picture import shown
+from .shot import Shot
 
 BUFFERS = ("direct", "ambient", "indirect", "radiance", "image")
 WORKER = Path(__file__).with_name("mitsuba_worker.py")
@@ -64,35 +61,15 @@ def path_traced(
 
     Raises `ParameterError`, also where Mitsuba is not installed, and `Error` with its last words where it fails.
     """
-    start = perf_counter()
     scene = load(scene)
     wanted = _checked(buffers, max_depth, samples, seed, timeout)
-    surfaces = shared_lab().render(scene, "none", size=size, camera=camera)
-    camera = camera or scene.camera
-    assert camera is not None  # Scene frames itself
-    view = View(camera, surfaces.size, scene.bounds)
+    shot = Shot.take(scene, size, camera)
+
+    def make(missing: list[str]) -> dict[str, np.ndarray]:
+        return _render(scene, shot.view, missing, max_depth, samples, seed, timeout)
+
     settings = {"engine": "mitsuba", "max_depth": max_depth, "samples": samples}
-    info = {
-        "aolab": __version__,
-        "renderer": "mitsuba scalar_rgb",
-        "scene": scene.source,
-        "module": "reference",
-        "parameters": settings,
-        "camera": asdict(camera),
-        "size": list(view.size),
-        "seed": seed,
-        "triangles": scene.triangles,
-    }
-    made_of = {name: info[name] for name in ("aolab", "camera", "size", "seed")}
-    name = disk.key(scene, buffers=wanted, **settings, **made_of) if cache else ""
-    arrays = disk.load(name) if cache else None
-    if arrays is None:
-        arrays = _render(scene, view, wanted, max_depth, samples, seed, timeout)
-        if cache:
-            disk.store(name, arrays)
-    own = {name: surfaces[name] for name in ("viewZ", "viewNormal", "albedo")}
-    milliseconds = (perf_counter() - start) * 1e3
-    return Frame({**own, **arrays}, {"mitsuba": milliseconds}, info, milliseconds, surfaces.notes)
+    return shot.frame("mitsuba scalar_rgb", settings, Question(), seed, wanted, make, cache)
 
 
 def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, timeout: float) -> list[str]:

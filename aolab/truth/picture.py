@@ -5,8 +5,8 @@ import numpy as np
 from ..pictures.tone import shown as shown
 from ..scene.environment import Environment
 from ..scene.view import View
-from .lighting import environment_radiance
 from .points import pixel_rays
+from .sky import environment_radiance
 
 
 def spread(values: np.ndarray, pixel: np.ndarray, view: View, background: float) -> np.ndarray:

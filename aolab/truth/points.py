@@ -15,6 +15,14 @@ HALF_ROUNDING = 1e-3
 # A ray through a pixel's centre and the rasteriser agree on the triangle when the plane passes within this share (1/n)
 # of a pixel's width. Measured on a scanned mesh at 960×540: 99.9 % of the pixels lie within 1/8000.
 SAME_PLANE = 16
+# Where they disagree, rays so far off the centre (x, y, in pixels) look for the G-buffer's surface, the nearest first.
+BESIDE = [
+    (r * x, r * y)
+    for r in (0.1, 0.4)
+    for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1))
+]
+# A normal whose cosine to the triangle's is below this faces away from it; perpendicular ones, of a corner, do not.
+FACING = -0.01
 EPSILON = float(np.finfo(np.float32).eps)
 
 
@@ -24,7 +32,6 @@ class Points:
 
     position: np.ndarray  # (n, 3) float32: where rays start, lifted off the surface
     normal: np.ndarray  # (n, 3) float32, unit: the G-buffer's, on the viewer's side
-    albedo: np.ndarray  # (n, 3) float32
 
     def __len__(self) -> int:
         return len(self.position)
@@ -33,16 +40,22 @@ class Points:
 class Surface:
     """The surface at the centre of every pixel that shows one; `pixel` holds their indices, row-major from the top.
 
-    The position is rebuilt from viewZ and moved onto the plane of the triangle that a ray through the pixel meets,
-    then lifted by `World.lift` along that triangle's normal, on the viewer's side. Where ray and rasteriser disagree
-    on the triangle (edges: a rasteriser snaps vertices to a fraction of a pixel), the point starts a pixel's width
-    off along the shading normal instead.
+    The point is where a ray through the pixel's centre meets a triangle, lifted by `World.lift` along that triangle's
+    normal, on the viewer's side. Nothing can lie between such a point and the eye, in particular not the other wall of
+    a corner whose edge the rasteriser drew a fraction of a pixel beside the edge that rays meet. The G-buffer's depth
+    decides whether both mean the same surface. Where they do not (silhouettes: a rasteriser snaps vertices to a
+    fraction of a pixel), rays close to the pixel's centre look for the G-buffer's surface; if none finds it, the point
+    starts a pixel's width off the G-buffer's position, along its normal.
+
+    The normal is the G-buffer's. Where that faces away from the triangle that the ray meets, it is the triangle's: at a
+    silhouette the rasteriser may draw the far side of a solid, whose normal, turned to the viewer, points inside.
     """
 
     def __init__(self, frame: Frame, scene: Scene, view: View, world: World) -> None:
         self.pixel = np.flatnonzero(frame.mask)
+        self.view = view
         self._view_z, self._normal, self._albedo = frame["viewZ"], frame["viewNormal"], frame["albedo"]
-        self._view, self._world = view, world
+        self._world = world
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre
         self._near = view.camera.clip_planes(scene.bounds)[0]
@@ -53,38 +66,64 @@ class Surface:
     def __len__(self) -> int:
         return len(self.pixel)
 
-    def points(self, start: int, stop: int) -> Points:
-        """The points from `start` up to `stop`. Safe to call from any thread."""
-        pixel = self.pixel[start:stop]
-        depth = -self._view_z.reshape(-1)[pixel].astype(np.float64)
-        to_world = self._world_from_view[:3, :3].T
-        directions = pixel_rays(self._view, pixel) @ to_world
-        positions = self._eye + directions * depth[:, None]
-        shading = _unit(self._normal.reshape(-1, 3)[pixel].astype(np.float64) @ to_world)
+    @property
+    def albedo(self) -> np.ndarray:
+        """(n, 3) float32, of all points."""
+        return self._albedo.reshape(-1, 3)[self.pixel]
 
+    def points(self, where: np.ndarray) -> Points:
+        """The points of the pixels number `where` (m,). Safe to call from any thread."""
+        pixel = self.pixel[where]
+        shading = _unit(self._normal.reshape(-1, 3)[pixel].astype(np.float64) @ self._world_from_view[:3, :3].T)
+        position, geometric, same = self._meet(pixel, (0.0, 0.0))
+        for offset in BESIDE:
+            if same.all():
+                break
+            rest = np.flatnonzero(~same)
+            position[rest], geometric[rest], same[rest] = self._meet(pixel[rest], offset)
+        rest = np.flatnonzero(~same)
+        shown, pixel_width = self._shown(pixel[rest])
+        position[rest] = shown + shading[rest] * (pixel_width + self._rounding)[:, None]
+        away = (shading * geometric).sum(axis=1) < FACING
+        flat = np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING
+        shading = np.where((same & (away | flat))[:, None], geometric, shading)
+        return Points(position.astype(np.float32), shading.astype(np.float32))
+
+    def _meet(self, pixel: np.ndarray, offset: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Where rays through pixels meet a triangle, lifted (m, 3); its normal (m, 3); is it the G-buffer's (m,)?
+
+        The rays pass `offset` (x, y), in pixels, beside the pixels' centres.
+        """
+        directions = pixel_rays(self.view, pixel, offset) @ self._world_from_view[:3, :3].T
         first = (self._eye + self._near * directions).astype(np.float32)
-        triangle = self._world.first_hit(first, _unit(directions).astype(np.float32), np.inf).triangle
-        geometric = self._world.normals[triangle].astype(np.float64)
-        geometric *= -np.sign((geometric * directions).sum(axis=1, keepdims=True))
-        height = ((positions - self._world.corners[triangle, 0]) * geometric).sum(axis=1)
+        directions = _unit(directions)
+        hits = self._world.first_hit(first, directions.astype(np.float32), np.inf)
+        normal = self._world.normals[hits.triangle].astype(np.float64)
+        normal *= -np.sign((normal * directions).sum(axis=1, keepdims=True))
+        corner = self._world.corners[hits.triangle, 0]
+        shown, pixel_width = self._shown(pixel)
+        off_plane = np.abs(((shown - corner) * normal).sum(axis=1))
+        same = (hits.triangle >= 0) & (off_plane <= pixel_width / SAME_PLANE + self._rounding)
+        met = first + directions * np.where(hits.triangle >= 0, hits.distance, 0).astype(np.float64)[:, None]
+        height = ((met - corner) * normal).sum(axis=1)  # what single precision left
+        return met + normal * (self._world.lift - height)[:, None], normal, same
 
-        pixel_width = depth * 2 * self._view.camera.half_extent(self._view.size)[1] / self._view.size[1]
-        facing = (shading * geometric).sum(axis=1) > 0
-        same = (triangle >= 0) & (np.abs(height) <= pixel_width / SAME_PLANE + self._rounding) & facing
-        geometric = np.where(same[:, None], geometric, shading)
-        flat = same & (np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING)
-        shading[flat] = geometric[flat]
-        lift = np.where(same, self._world.lift - height, pixel_width + self._rounding)
-        position = (positions + geometric * lift[:, None]).astype(np.float32)
-        return Points(position, shading.astype(np.float32), self._albedo.reshape(-1, 3)[pixel])
+    def _shown(self, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """The G-buffer's positions (m, 3), and the width (m,) of a pixel there, scene units."""
+        depth = -self._view_z.reshape(-1)[pixel].astype(np.float64)
+        position = self._eye + pixel_rays(self.view, pixel) @ self._world_from_view[:3, :3].T * depth[:, None]
+        return position, depth * 2 * self.view.camera.half_extent(self.view.size)[1] / self.view.size[1]
 
 
-def pixel_rays(view: View, pixel: np.ndarray) -> np.ndarray:
-    """(n, 3) float64: the view-space rays, z = -1, through the centres of pixels, row-major from the top left."""
+def pixel_rays(view: View, pixel: np.ndarray, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+    """(n, 3) float64: view-space rays, z = -1, through the centres of pixels, row-major from the top left.
+
+    `offset` (x to the right, y up), in pixels, moves them off the centres.
+    """
     width, height = view.size
     scale_x, scale_y, offset_x, offset_y = ray_scale_offset(view.camera, view.size)
-    x = (pixel % width + 0.5) * scale_x + offset_x
-    y = (height - 0.5 - pixel // width) * scale_y + offset_y
+    x = (pixel % width + 0.5 + offset[0]) * scale_x + offset_x
+    y = (height - 0.5 - pixel // width + offset[1]) * scale_y + offset_y
     return np.stack([x, y, np.full_like(x, -1)], axis=-1)
 
 

@@ -171,15 +171,25 @@ def _wrapped(texture: Texture, u: np.ndarray, v: np.ndarray) -> tuple[np.ndarray
 
 
 def bilinear(image: np.ndarray, u: np.ndarray, v: np.ndarray, repeat_rows: bool) -> np.ndarray:
-    """(n, C): `image` (H, W, C) at u (along a row) and v (from the first row down), in [0, 1]; u repeats."""
-    height, width = image.shape[:2]
-    x, y = u * width - 0.5, v * height - 0.5
+    """(n, C) float32: `image` (H, W, C) at u (along a row) and v (from the first row down), in [0, 1]; u repeats."""
+    height, width, channels = image.shape
+    texels = image.reshape(-1, channels)  # one index a texel: several times faster than a row and a column
+    x, y = u * np.float32(width) - np.float32(0.5), v * np.float32(height) - np.float32(0.5)
     left, top = np.floor(x), np.floor(y)
     right_share, low_share = ((a - b).astype(np.float32)[:, None] for a, b in ((x, left), (y, top)))
     column, row = left.astype(np.int64), top.astype(np.int64)
     columns = column % width, (column + 1) % width
     rows = (row % height, (row + 1) % height) if repeat_rows else (row.clip(0), (row + 1).clip(max=height - 1))
     upper, lower = (
-        image[r, columns[0]] * (1 - right_share) + image[r, columns[1]] * right_share for r in rows
-    )  # fmt: skip
-    return upper * (1 - low_share) + lower * low_share
+        _between(texels.take(r * width + columns[0], axis=0), texels.take(r * width + columns[1], axis=0), right_share)
+        for r in rows
+    )
+    return _between(upper, lower, low_share)
+
+
+def _between(a: np.ndarray, b: np.ndarray, share: np.ndarray) -> np.ndarray:
+    """a + (b - a) · share, in the memory of `a` and `b`."""
+    b -= a
+    b *= share
+    a += b
+    return a

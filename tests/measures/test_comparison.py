@@ -191,7 +191,7 @@ def test_a_frame_shows_itself_in_notebooks(noise):
         ({"visibility": np.ones((4, 5))}, {"ambient": np.ones((4, 5))}, None, "a has visibility; b has ambient"),
         ({"viewZ": np.ones((4, 5))}, {"viewZ": np.ones((4, 5))}, None, "only viewZ: name them"),
         ({"visibility": np.ones((4, 5))}, {"visibility": np.ones((4, 5))}, "visibilty", "did you mean 'visibility'"),
-        ({"visibility": np.ones((4, 5))}, {"visibility": np.ones((4, 5))}, [], "asks for nothing; both have visib"),
+        ({"visibility": np.ones((4, 5))}, {"visibility": np.ones((4, 5))}, [], "is empty; both have visib"),
         ({"visibility": np.full((4, 5), np.nan)},) * 2 + (None, "all 20 pixels are background"),
         ({"visibility": np.ones((4, 5)), "viewZ": np.full((4, 5), -np.inf)},) * 2 + (None, "all 5×4 pixels are back"),
         ({"visibility": np.ones(4)}, {"visibility": np.ones(4)}, None, r"of a has shape \(4,\)"),
@@ -214,5 +214,5 @@ def test_a_negative_border_and_a_missing_buffer_are_refused(noise):
 def test_other_surfaces_are_told(noise):
     view_z = scene_depth()
     moved = np.roll(view_z, 1, axis=0)
-    with pytest.warns(aolab.Notice, match="112 pixels are background in one of them"):
+    with pytest.warns(aolab.Notice, match="112 pixels, background in one of them"):
         compare({"visibility": noise, "viewZ": view_z}, {"visibility": noise, "viewZ": moved}, flip=False)

@@ -5,6 +5,7 @@ import pytest
 from small_scenes import box, floor, of
 
 import aolab
+from aolab.measures.explain import with_margin
 
 # the floor is one quad, open on purpose, and peeling says so
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")]
@@ -30,6 +31,31 @@ def test_the_parts_add_up_to_the_error(boxes_explained):
 def test_a_plane_has_no_error_of_any_kind(plane):
     explained = aolab.explain(plane, "ssao", **SMALL)
     assert all(row["rmse"] == 0.0 for row in explained.table().values())
+
+
+def test_a_margin_leaves_every_pixel_its_sample_set(lab, boxes):
+    """50 rows want a margin of 25, which is no whole number of the pattern's periods: 24 then, and the same noise."""
+    size, module = (70, 50), aolab.SSAO(radius=0.3, directions=4, steps=1, filter="none").resolved(boxes)
+    wide = with_margin(lab, boxes, module, boxes.camera, size, 0, 1)["visibility"]
+    plain = lab.render(boxes, module, size=size)["visibility"]
+    inner = (slice(10, -10), slice(10, -10))  # whose spheres are on the screen
+    difference = np.abs(wide - plain)[inner]
+    assert (plain[inner] < 1).mean() > 0.03
+    assert np.nanmean(difference > 1e-3) < 0.02
+
+
+def test_how_far_senders_see_is_a_part_of_the_bounce_alone():
+    """In a sealed room no sky reaches a wall, but within the radius of each there is one."""
+    walls = box((-2, -2, -2), (2, 2, 2))
+    room = of(walls, camera=aolab.Camera(eye=(0, 0.3, 1.9), target=(0, -0.2, 0), fov=90))
+    options = {**SMALL, "size": (48, 32), "frames": 4, "bounces": 1}
+    bounced = aolab.explain(room, "ssdo", buffer="indirect", **options)
+    assert (bounced.truth["indirect"] == 0).all()
+    table = bounced.table()
+    assert table["limited senders"]["bias"] > 0.02
+    assert table["limited senders"]["share"] > 0.5
+    assert bounced.residual < 1e-6
+    assert "limited senders" not in aolab.explain(room, "ssdo", buffer="ambient", **options).table()
 
 
 def test_a_blocker_beside_the_image_is_off_screen_geometry():

@@ -17,6 +17,24 @@ def test_differences_by_hand():
     assert found["maximum"] == 5.0
 
 
+def test_outliers_are_told_from_the_rest():
+    """One pixel in a hundred errs by 10, the others by 0.1: it makes 99 % of the squares."""
+    difference = np.full((300, 3), 0.1)
+    difference[:3] = -10.0
+    found = differences(difference)
+    assert found["trimmed"] == pytest.approx(0.1)
+    assert found["outliers"] == pytest.approx(300 / (300 + 297 * 0.01))
+    assert found["rmse"] == pytest.approx(math.sqrt((300 + 2.97) / 300))
+    assert differences(np.zeros(5))["outliers"] == 0
+    assert math.isnan(differences(np.ones(1))["trimmed"])
+
+
+def test_even_errors_have_no_outliers():
+    found = differences(np.full(1000, 0.3))
+    assert found["trimmed"] == found["rmse"] == pytest.approx(0.3)
+    assert found["outliers"] == pytest.approx(0.01)
+
+
 def test_percentiles_are_of_magnitudes():
     found = differences(-np.arange(101.0))
     assert (found["p50"], found["p90"], found["p99"]) == pytest.approx((50, 90, 99))

@@ -7,7 +7,7 @@ from PIL import Image
 
 from aolab import paths
 from aolab.errors import FileError, Notice, SceneError
-from aolab.scene.environment import HALF_MAX, Environment, direction_from_uv, uv_from_direction
+from aolab.scene.environment import HALF_MAX, Environment, averaged, direction_from_uv, uv_from_direction
 
 AXES = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], float)
 
@@ -143,6 +143,23 @@ def test_large_maps_are_averaged_not_sampled(height, width):
     environment = Environment(np.repeat(radiance[..., None], 3, axis=2))
     expected = 3 * np.pi + 2 * np.pi / 3 * NORMALS @ axis
     np.testing.assert_allclose(environment.irradiance(NORMALS)[:, 2], expected, rtol=1e-3)
+
+
+@pytest.mark.parametrize(("size", "most"), [((16, 32), (4, 8)), ((15, 31), (4, 8)), ((9, 5), (2, 5))])
+def test_an_averaged_map_sends_as_much_light_as_the_whole_one(size, most):
+    """A row near a pole covers less of the sphere than one at the horizon: each counts by its own solid angle."""
+    radiance = np.random.default_rng(6).random((*size, 3)).astype(np.float32)
+    rows = -np.diff(np.cos(np.pi * np.arange(size[0] + 1) / size[0])) * 2 * np.pi / size[1]
+    values, directions, solid_angles = averaged(radiance, most)
+    assert values.shape[:2] == tuple(np.minimum(size, most))
+    total = np.einsum("hwc,hw->c", values, solid_angles)
+    if size[1] % most[1] == 0:  # else columns of a cell differ in number by one
+        np.testing.assert_allclose(total, np.einsum("hwc,h->c", radiance, rows), rtol=1e-5)
+    one_column = np.broadcast_to(radiance[:, :1], radiance.shape)
+    whole = np.einsum("hwc,h->c", one_column, rows)
+    np.testing.assert_allclose(np.einsum("hwc,hw->c", averaged(one_column, most)[0], solid_angles), whole, rtol=1e-5)
+    np.testing.assert_allclose(solid_angles.sum(), 4 * np.pi, rtol=1e-12)
+    np.testing.assert_allclose(np.linalg.norm(directions, axis=2), 1, atol=1e-12)
 
 
 def test_irradiance_is_never_negative():

@@ -1,6 +1,7 @@
 """References on disk: found again by content, made anew when damaged, whole after a kill."""
 
 import os
+import shutil
 import subprocess
 import sys
 
@@ -27,7 +28,7 @@ def entries(folder):
 def test_the_second_call_reads_what_the_first_one_wrote(cache_folder):
     first = visibility()
     (entry,) = entries(cache_folder)
-    np.savez(entry, visibility=first / 2)  # only somebody who reads it can see this
+    np.savez(entry, visibility=first / 2, standard_error=first)  # only somebody who reads it can see this
     np.testing.assert_array_equal(visibility(), first / 2)
     np.testing.assert_array_equal(visibility(cache=False), first)
 
@@ -47,7 +48,6 @@ def test_whatever_changes_the_result_changes_the_entry(cache_folder):
         {"rays": 4},
         {"radius": 1.0},
         {"radius": 1.0, "falloff": 0.5},
-        {"buffers": "ambient"},
         {"engine": "numpy"},
         {"camera": aolab.Camera((1.6, 3, 0), (1.2, 0, 0), up=(0, 0, -1), fov=21)},
         {"what": wall_scene(floor_albedo=0.7)},
@@ -62,6 +62,47 @@ def test_whatever_changes_the_result_changes_the_entry(cache_folder):
         assert len(entries(cache_folder)) == number, f"call {number} found another's entry"
     visibility()
     assert len(entries(cache_folder)) == len(calls)
+
+
+def test_one_buffer_of_a_stored_reference_is_read_and_a_further_one_is_added(cache_folder):
+    room, names = wall_scene(environment=aolab.Environment.sky()), ("visibility", "ambient", "bent_normal", "indirect")
+    whole = reference(room, size=SIZE, rays=8, buffers=names)
+    assert not whole.info["cached"]
+    for name in names:
+        one = reference(room, size=SIZE, rays=8, buffers=name)
+        assert one.info["cached"]
+        np.testing.assert_array_equal(one[name], whole[name])
+    more = reference(room, size=SIZE, rays=8, buffers=("ambient", "sh0"))
+    assert not more.info["cached"]
+    assert reference(room, size=SIZE, rays=8, buffers=("sh0", *names)).info["cached"]
+    assert len(entries(cache_folder)) == 1
+
+
+@pytest.mark.parametrize("name", ["visibility", "ambient", "indirect", "sh1", "transfer_multibounce"])
+def test_a_buffer_is_the_same_whatever_else_is_computed(name):
+    """Else a buffer that is added to a stored reference would not belong to it."""
+    lamp = aolab.PointLight((1.0, 0.5, 0.3))
+    room = wall_scene(environment=aolab.Environment.sky(sun_direction=(1, 1, 0)), lights=(lamp,))
+    settings = {"size": SIZE, "rays": 8, "radius": 1.5, "falloff": 0.5, "cache": False}
+    everything = reference(
+        room, **settings, buffers=("sh1", "visibility", "ambient", "indirect", "transfer_multibounce")
+    )
+    alone = reference(room, **settings, buffers=name)
+    np.testing.assert_allclose(alone[name], everything[name], rtol=1e-5, atol=1e-6)
+
+
+def test_a_change_in_any_file_of_the_package_is_another_entry(tmp_path, monkeypatch, cache_folder):
+    copy = tmp_path / "aolab"
+    shutil.copytree(cache.PACKAGE, copy, ignore=shutil.ignore_patterns("__pycache__"))
+    assert cache.code(copy) == cache.code(cache.PACKAGE)
+    file = copy / "maths" / "harmonics.py"
+    file.write_text(file.read_text() + "# changed")
+    cache.code.cache_clear()
+    assert cache.code(copy) != cache.code(cache.PACKAGE)
+    visibility()
+    monkeypatch.setattr(cache, "PACKAGE", copy)
+    visibility()
+    assert len(entries(cache_folder)) == 2
 
 
 @pytest.mark.parametrize("damage", [lambda data: data[: len(data) // 2], lambda data: b"", lambda data: b"\0" + data])
@@ -108,9 +149,9 @@ def test_a_kill_in_the_middle_of_a_write_leaves_the_old_entry(cache_folder):
     assert child.stdout == "writing\n"
     assert child.returncode != 0
     assert len(list(cache_folder.iterdir())) == 2  # the entry, and what was left half done
-    np.testing.assert_array_equal(cache.load("entry")["whole"], np.arange(3))
+    np.testing.assert_array_equal(cache.load("entry", ["whole"])["whole"], np.arange(3))
     cache.store("entry", {"whole": np.arange(5)})
-    np.testing.assert_array_equal(cache.load("entry")["whole"], np.arange(5))
+    np.testing.assert_array_equal(cache.load("entry", ["whole"])["whole"], np.arange(5))
 
 
 def test_the_least_recently_used_go_first(cache_folder, monkeypatch):
@@ -119,7 +160,7 @@ def test_the_least_recently_used_go_first(cache_folder, monkeypatch):
         cache.store(name, {"a": array})
         path = cache_folder / f"{name}.npz"
         os.utime(path, (1e9 - age, 1e9 - age))
-    assert cache.load("oldest") is not None  # used just now
+    assert cache.load("oldest", ["a"])  # used just now
     monkeypatch.setattr(cache, "BUDGET", 3.5 * path.stat().st_size)
     cache.store("newest", {"a": array})
     assert {file.stem for file in entries(cache_folder)} == {"new", "oldest", "newest"}

@@ -6,7 +6,7 @@ import pytest
 import aolab
 from aolab.scene.environment import direction_from_uv
 from aolab.truth import reference
-from aolab.truth.lighting import environment_radiance
+from aolab.truth.sky import environment_radiance
 
 from .rooms import ceiling_scene, quad, scene, wall_scene, world_positions
 
@@ -61,6 +61,23 @@ def test_one_bounce_from_an_evenly_lit_wall(reach):
     expected = 0.5 * closed * 0.25 / np.pi * np.array([1, 2, 3])
     np.testing.assert_allclose(frame["indirect"][frame.mask], expected, rtol=2e-3, atol=1e-5)
     np.testing.assert_allclose(frame["direct"][frame.mask], 0, atol=1e-5)
+
+
+@pytest.mark.parametrize("reach", [{}, {"radius": 1.5, "falloff": 0.4}])
+def test_one_bounce_of_the_sky_from_a_wall(reach):
+    """The sky ends at the horizon: every point of the wall faces one half of it, and floors below give nothing.
+
+    So the wall's irradiance is π/2, wherever the floor ends, and it sends albedo · 1/2 along each closed direction.
+    """
+    half = np.zeros((256, 4, 3), np.float32)
+    half[:128] = (1.0, 2.0, 4.0)
+    room = wall_scene(floor_albedo=0.5, wall_albedo=0.6, environment=aolab.Environment(half))
+    frame = reference(room, size=SIZE, rays=256, buffers=("indirect", "visibility"), **reach)
+    closed = 1 - frame["visibility"][frame.mask]
+    found, error = (frame[name][frame.mask] for name in ("indirect", "indirect_standard_error"))
+    expected = 0.5 * 0.6 * 0.5 * closed[:, None] * np.array([1.0, 2.0, 4.0])
+    assert expected.mean() > 10 * np.sqrt((error**2).mean() / len(error))
+    assert (np.abs((found - expected).mean(axis=0)) < 4 * np.sqrt((error**2).sum(axis=0)) / len(error)).all()
 
 
 def test_a_sender_beyond_the_radius_does_not_reflect():

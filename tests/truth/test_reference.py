@@ -18,9 +18,9 @@ def test_pixels_are_those_of_a_render():
     for name in ("viewZ", "viewNormal", "albedo"):
         np.testing.assert_array_equal(frame[name], render[name])
     assert frame.size == render.size
-    assert frame.buffers == sorted(
-        ["viewZ", "viewNormal", "albedo", "visibility", "ambient", "bent_normal", "indirect", "standard_error"]
-    )
+    errors = ["standard_error", *(f"{name}_standard_error" for name in ("ambient", "bent_normal", "indirect"))]
+    results = ["visibility", "ambient", "bent_normal", "indirect"]
+    assert frame.buffers == sorted(["viewZ", "viewNormal", "albedo", *results, *errors])
 
 
 def test_the_background_is_nan_in_scalars_and_black_in_light():
@@ -31,6 +31,7 @@ def test_the_background_is_nan_in_scalars_and_black_in_light():
     assert np.isnan(frame["visibility"][background]).all()
     assert np.isnan(frame["standard_error"][background]).all()
     assert (frame["ambient"][background] == 0).all()
+    assert np.isnan(frame["ambient_standard_error"][background]).all()
 
 
 def test_a_camera_that_sees_nothing_gets_a_frame_all_the_same():
@@ -80,7 +81,11 @@ def test_like_by_name_resolves_auto():
         ({"radius": float("nan")}, r"radius = nan is not a length above 0"),
         ({"falloff": 1.5}, r"falloff = 1\.5 is outside \[0, 1\]"),
         ({"buffers": ["visiblity"]}, r"no buffer 'visiblity'; did you mean 'visibility'"),
-        ({"like": "ssao", "radius": 1.0}, r"either those or `like`"),
+        ({"like": "ssao", "radius": 1.0}, r"radius comes from `like`; give either radius or `like`"),
+        ({"raduis": 1.0}, r"a question has no 'raduis'; did you mean 'radius'"),
+        ({"error": 1.5}, r"error = 1\.5 is not a share in \(0, 1\)"),
+        ({"falloff": "wendland"}, r"falloff = 'wendland' needs a radius"),
+        ({"engine": "mitsuba", "error": 0.1}, r"'mitsuba' has no radius, falloff, like or error"),
         ({"measure": "cubic"}, r"measure = 'cubic' is unknown"),
         ({"bounces": -1}, r"bounces = -1 is not a whole number"),
         ({"engine": "optix"}, r"engine = 'optix' is unknown"),
