@@ -44,7 +44,7 @@ class Geometry:
     def draw(self, scene: Scene, program: Program) -> None:
         """Draw every instance; sets the program's `MESH_UNIFORMS`, and puts base_texture on unit 0."""
         for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
-            gpu = self._place(mesh, placements, scene.centre)
+            gpu = self._place(mesh, placements, scene.shader_origin)
             self._use_material(mesh, number, program)
             self._array(gpu, program).render(instances=len(placements))
 

@@ -64,7 +64,7 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
         kind[i], tile[i] = _KIND[type(one)], shadows.first_tile[i]
         color[i] = one.irradiance if isinstance(one, DirectionalLight) else one.intensity
         if not isinstance(one, DirectionalLight):
-            position[i] = one.position - scene.centre
+            position[i] = one.position - scene.shader_origin
         if not isinstance(one, PointLight):
             direction[i] = np.asarray(one.direction) / np.linalg.norm(one.direction)
         if isinstance(one, SpotLight):

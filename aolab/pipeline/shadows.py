@@ -54,7 +54,7 @@ def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.n
     if isinstance(light, DirectionalLight):
         direction = np.asarray(light.direction) / np.linalg.norm(light.direction)
         return [(look_along(-direction * radius, direction), orthographic(radius, radius, 0, 2 * radius))]
-    position = np.asarray(light.position, float) - scene.centre
+    position = np.asarray(light.position, float) - scene.shader_origin
     far = float(np.linalg.norm(position)) + radius
     near = far * 1e-3
     if isinstance(light, SpotLight):

@@ -13,6 +13,7 @@ from .camera import Camera
 from .environment import Environment
 from .lights import DirectionalLight, Light
 from .mesh import Mesh
+from .view import shader_origin
 
 SAMPLED = 1000  # vertices of an instance that decide what is framed
 OUTLYING = 1.0  # per cent of the vertices at either end of an axis that may be left out of the frame
@@ -146,8 +147,13 @@ class Scene:
 
     @property
     def centre(self) -> np.ndarray:
-        """(3,) float64: the middle of the bounds, world space. Shaders compute with it as their origin."""
+        """(3,) float64: the middle of the bounds, world space."""
         return self.bounds.mean(axis=0)
+
+    @property
+    def shader_origin(self) -> np.ndarray:
+        """(3,) float64: the point of world space that is the origin of the shaders' world; see `view.shader_origin`."""
+        return shader_origin(self.bounds)
 
     @property
     def radius(self) -> float:

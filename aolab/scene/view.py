@@ -30,6 +30,18 @@ def ray_scale_offset(camera: Camera, size: Size) -> tuple[float, float, float, f
     return 2 * half_x / size[0], 2 * half_y / size[1], -half_x, -half_y
 
 
+FAR = 100.0  # diagonals: from there, float32 would move a vertex by 6e-6 of the scene's size
+
+
+def shader_origin(bounds: np.ndarray) -> np.ndarray:
+    """(3,) float64: the origin of the world that shaders compute in: 0, or the centre of a scene that is far from it.
+
+    float32 is finest near 0. A house at map coordinates, 4e6 units from the origin, would have steps of 0.5 units.
+    """
+    far = np.abs(bounds).max() > FAR * np.linalg.norm(bounds[1] - bounds[0])
+    return bounds.mean(axis=0) if far else np.zeros(3)
+
+
 @dataclass(frozen=True)
 class View:
     """`camera` drawn at `size`, with clip planes that hold the world `bounds` (2, 3).
@@ -56,11 +68,8 @@ class View:
 
     @property
     def view_from_shader(self) -> np.ndarray:
-        """(4, 4) float64: to view space from the world of the shaders, in which the scene's centre is 0.
-
-        float32 is finest there. A house at map coordinates, 4e6 units from the origin, would have steps of 0.5 units.
-        """
-        return self.camera.view_from_world @ moved(self.bounds.mean(axis=0))
+        """(4, 4) float64: to view space from the world of the shaders, whose origin is `shader_origin`."""
+        return self.camera.view_from_world @ moved(shader_origin(self.bounds))
 
     @cached_property
     def uniforms(self) -> dict[str, object]:

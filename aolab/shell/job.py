@@ -106,11 +106,15 @@ class Job:
 
     def _settings_of_a_reference(self) -> dict[str, Any]:
         """The metadata's `parameters` of a ray-traced picture, as `aolab.reference` takes them."""
+        from ..modules.question import Question
         from ..truth import reference
 
         known = signature(reference).parameters
         types: dict[str, Any] = {
             name: (one.annotation, one.default) for name, one in known.items() if name in self.parameters
+        }
+        types |= {
+            field.name: (field.type, field.default) for field in fields(Question) if field.name in self.parameters
         }
         checked = create_model("Settings", __config__={"extra": "forbid"}, **types)
         try:

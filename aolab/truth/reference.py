@@ -85,8 +85,8 @@ def reference(
     """
     scene = load(scene)
     if isinstance(like, Frame):
-        size, camera = size or like.size, camera or like.camera
-    size = size or DEFAULT_SIZE
+        size, camera = like.size if size is None else size, camera or like.camera
+    size = DEFAULT_SIZE if size is None else size
     if engine == "mitsuba":
         if question or error is not None or not (like is None or isinstance(like, Frame)):
             raise ParameterError("engine = 'mitsuba' has no radius, falloff, like or error: it traces whole paths")

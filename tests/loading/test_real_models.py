@@ -50,7 +50,9 @@ def test_milk_truck():
     assert sorted(round(wheel.world_from_local[0, 3], 3) for wheel in wheels) == [-1.352, 1.433]
     glass = next(instance.mesh.material for instance in scene.instances if instance.mesh.material.name == "glass")
     assert glass.base_color == (0.0, 0.04050629958510399, 0.021240700036287308)
-    textures = {id(instance.mesh.material.texture) for instance in scene.instances if instance.mesh.material.texture}
+    textures = {
+        id(instance.mesh.material.texture.pixels) for instance in scene.instances if instance.mesh.material.texture
+    }
     assert len(textures) == 1
 
 

@@ -33,7 +33,7 @@ def from_above(scene: Scene, view: View) -> Projection:
     """Straight down on the scene's bounding sphere."""
     centre, radius = scene.bounds.mean(axis=0), scene.radius
     eye = centre + np.array((0, radius, 0))
-    return Projection(look_along(eye, np.array((0, -1, 0))), orthographic(radius, 2 * radius), (GRID, GRID))
+    return Projection(look_along(eye, np.array((0, -1, 0))), orthographic(radius, radius, 0, 2 * radius), (GRID, GRID))
 
 
 class Voxels(Module):

@@ -5,8 +5,8 @@ import OpenEXR
 import pytest
 from PIL import Image
 
-from aolab import paths
 from aolab.errors import FileError, Notice, SceneError
+from aolab.gl.source import assemble
 from aolab.scene.environment import HALF_MAX, Environment, averaged, direction_from_uv, uv_from_direction
 
 AXES = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], float)
@@ -62,8 +62,8 @@ def test_direction_and_uv_round_trip():
     np.testing.assert_allclose(direction_from_uv(uv_from_direction(directions)), directions, atol=1e-7)
 
 
-UV_SHADER = """#version 330
-%s
+UV_SHADER = """
+#include "lib/environment.glsl"
 in vec3 direction;
 out vec2 uv;
 void main() { uv = environmentUv(direction); }
@@ -71,9 +71,7 @@ void main() { uv = environmentUv(direction); }
 
 
 def test_glsl_uv_equals_numpy(gl):
-    program = gl.program(
-        vertex_shader=UV_SHADER % (paths.glsl() / "lib" / "environment.glsl").read_text(), varyings=["uv"]
-    )
+    program = gl.program(vertex_shader=assemble(UV_SHADER).text, varyings=["uv"])
     poles = np.array([[1e-3, 1, 0], [0, -1, 1e-3]]) / np.sqrt(1 + 1e-6)
     directions = np.concatenate([random_directions(500), AXES, poles]).astype("f4")
     gl.simple_framebuffer((1, 1)).use()  # transform feedback needs a complete framebuffer, even if unused

@@ -183,7 +183,7 @@ def test_a_file_is_described_as_a_module(aolab, student):
 
 def test_a_picture_shows_any_buffer_and_its_scale_is_printed(aolab):
     done = aolab("render", "boxes", *SMALL, "--buffer", "visibility", "-o", "ao.png", "--buffers", "a.npz")
-    assert (done.code, done.out) == (0, "ao.png: visibility, black 0, white 1\n")
+    assert (done.code, done.out) == (0, "ao.png: visibility, black 0 to white 1\n")
     with np.load("a.npz") as buffers:
         visibility = buffers["visibility"]
     seen = pixels("ao.png")
@@ -191,7 +191,7 @@ def test_a_picture_shows_any_buffer_and_its_scale_is_printed(aolab):
     np.testing.assert_array_equal(seen[where], np.rint(visibility[where] * 255)[:, None].repeat(3, axis=1))
     assert (seen[~where] == 153).all()
     info = read_png("ao.png")
-    assert (info["buffer"], info["scale"]) == ("visibility", "black 0, white 1")
+    assert (info["buffer"], info["scale"]) == ("visibility", "black 0 to white 1")
     assert aolab("render", "--like", "ao.png", "-o", "again.png").code == 0
     np.testing.assert_array_equal(seen, pixels("again.png"))
 
@@ -233,7 +233,7 @@ def test_the_reference_of_a_picture_and_of_a_reference(aolab):
 
 def test_a_buffer_of_the_reference_that_is_not_traced_by_default(aolab):
     done = aolab("reference", "boxes", *SMALL, "--rays", "4", "--buffer", "sh0", "-o", "a.png")
-    assert done.out.startswith("a.png: sh0, channel 1 of 4, black ")
+    assert done.out.startswith("a.png: sh0, blue -")
 
 
 # --- the camera and the metadata
