@@ -1,6 +1,7 @@
 """The Python side of the widget `aolab.explore`. The browser side is explorer.js."""
 
 import time
+import warnings
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
@@ -11,7 +12,7 @@ import numpy as np
 import traitlets
 from PIL import Image
 
-from ..errors import Error
+from ..errors import Error, Notice
 from ..gl.texture import Size
 from ..gl.thread import post
 from ..measures import compare
@@ -157,8 +158,11 @@ class Explorer(anywidget.AnyWidget):
                 progress=False,
             )
         truth = self._truths[key]
-        compared = compare(frame, truth, buffer, flip=False)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always", Notice)
+            compared = compare(frame, truth, buffer, flip=False)
         text = f"; {buffer}: RMSE {compared[buffer].rmse:.4g}, bias {compared[buffer].measures['all'].bias:+.4g}"
+        text += "".join(f"; {note.message}" for note in caught)
         if view == "truth":
             return *_picture(truth, buffer, False), text
         error = compared[buffer].error
