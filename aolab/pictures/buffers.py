@@ -32,7 +32,9 @@ class Scale:
     colors: str
 
     def __str__(self) -> str:
-        ends = {"gray": ("black ", "white "), "RdBu_r": ("blue ", "red ")}.get(self.colors, (f"{self.colors} ", ""))
+        ends = {"gray": ("black ", "white "), "RdBu_r": ("blue ", "red "), "viridis": ("violet ", "yellow ")}[
+            self.colors
+        ]
         return f"{ends[0]}{self.low:.4g} to {ends[1]}{self.high:.4g}"
 
     def pixels(self, values: np.ndarray) -> np.ndarray:
@@ -85,7 +87,9 @@ def buffer_pixels(name: str, values: np.ndarray, scale: Scale | None) -> np.ndar
 
 
 def scale_in_words(name: str, values: np.ndarray) -> str:
-    """The meaning of the colours that `buffer_pixels` gives the buffer `name`."""
+    """The meaning of the colours in a picture of the buffer `name`; of other than 1 or 3 channels, in that of the first."""
+    if values.ndim == 3 and values.shape[2] not in (1, 3):
+        return f"channel 1 of {values.shape[2]}, {scale_in_words(name, values[..., 0])}"
     kind = name.removesuffix("_raw")
     if (scale := scale_of(name, values)) is not None:
         return str(scale)

@@ -9,6 +9,7 @@ import pytest
 from PIL import Image
 
 from aolab import Lab
+from aolab.pictures.buffers import BACKGROUND
 from aolab.pictures.metadata import read_png, save_png
 
 SMALL = ("--size", "24x16")
@@ -189,7 +190,7 @@ def test_a_picture_shows_any_buffer_and_its_scale_is_printed(aolab):
     seen = pixels("ao.png")
     where = np.isfinite(visibility)
     np.testing.assert_array_equal(seen[where], np.rint(visibility[where] * 255)[:, None].repeat(3, axis=1))
-    assert (seen[~where] == 153).all()
+    assert (seen[~where] == BACKGROUND).all()
     info = read_png("ao.png")
     assert (info["buffer"], info["scale"]) == ("visibility", "black 0 to white 1")
     assert aolab("render", "--like", "ao.png", "-o", "again.png").code == 0
@@ -233,7 +234,7 @@ def test_the_reference_of_a_picture_and_of_a_reference(aolab):
 
 def test_a_buffer_of_the_reference_that_is_not_traced_by_default(aolab):
     done = aolab("reference", "boxes", *SMALL, "--rays", "4", "--buffer", "sh0", "-o", "a.png")
-    assert done.out.startswith("a.png: sh0, blue -")
+    assert done.out.startswith("a.png: sh0, channel 1 of 4, violet ")
 
 
 # --- the camera and the metadata
