@@ -82,15 +82,15 @@ class Job:
     def trace(self, rays: int | None, radius: float | None) -> Frame:
         """Ray-trace the picture with the radius and the falloff of the module; `radius` replaces the module's."""
         from ..truth import reference
-        from ..truth.buffers import BUFFERS
+        from ..truth.buffers import BUFFERS, base_of
         from ..truth.reference import DEFAULT_BUFFERS
 
         settings = self._reach(radius)
         if rays is not None:
             settings["rays"] = rays
         wanted = [*DEFAULT_BUFFERS, "image"]
-        if self.buffer in BUFFERS and self.buffer not in wanted:
-            wanted.append(self.buffer)
+        if (name := base_of(self.buffer)) in BUFFERS and name not in wanted:
+            wanted.append(name)
         scene, notes = self._load()
         frame = reference(scene, size=self.size, camera=self._camera(scene), seed=self.seed, buffers=wanted, **settings)
         frame.notes = [*notes, *frame.notes]
@@ -105,20 +105,16 @@ class Job:
         return {"like": module.replace(radius=radius)} if hasattr(module, "radius") else {"radius": radius}
 
     def _settings_of_a_reference(self) -> dict[str, Any]:
-        """The metadata's `parameters` of a ray-traced picture, as `aolab.reference` takes them."""
+        """The metadata's `parameters` of a ray-traced picture, as `aolab.reference` takes them: also its question."""
         from ..modules.question import Question
         from ..truth import reference
 
-        known = signature(reference).parameters
-        types: dict[str, Any] = {
-            name: (one.annotation, one.default) for name, one in known.items() if name in self.parameters
-        }
-        types |= {
-            field.name: (field.type, field.default) for field in fields(Question) if field.name in self.parameters
-        }
+        given = {name: value for name, value in self.parameters.items() if name != "buffers"}
+        known = {**signature(reference).parameters, **signature(Question).parameters}
+        types: dict[str, Any] = {name: (known[name].annotation, ...) for name in given.keys() & known.keys()}
         checked = create_model("Settings", __config__={"extra": "forbid"}, **types)
         try:
-            return checked(**self.parameters).model_dump()
+            return checked(**given).model_dump()
         except ValidationError as error:
             raise FileError(f"the settings of the reference are damaged: {_first(error)}") from None
 

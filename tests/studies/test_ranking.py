@@ -9,7 +9,7 @@ import aolab
 from aolab.studies import compare_modules, ranking, sheet
 
 SMALL = {"size": (64, 48), "rays": 16, "flip": False}
-# the truth of so few rays is noisy, and `compare` says so
+# the truth of so few rays is noisy, and `compare` warns of it
 pytestmark = pytest.mark.filterwarnings("ignore:buffer .* the reference's own standard error:aolab.errors.Notice")
 
 
