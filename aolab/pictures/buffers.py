@@ -87,7 +87,7 @@ def buffer_pixels(name: str, values: np.ndarray, scale: Scale | None) -> np.ndar
 
 
 def scale_in_words(name: str, values: np.ndarray) -> str:
-    """The meaning of the colours in a picture of the buffer; if it has not 1 or 3 channels, in a picture of the first."""
+    """The meaning of the colours in a picture of the buffer. Of 2, 4 or more channels, the picture shows the first."""
     if values.ndim == 3 and values.shape[2] not in (1, 3):
         return f"channel 1 of {values.shape[2]}, {scale_in_words(name, values[..., 0])}"
     kind = name.removesuffix("_raw")
