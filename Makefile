@@ -23,15 +23,15 @@ $(shell grep -qxF "$$(pwd)" $(RUNTIME) 2>/dev/null || rm -f $(RUNTIME))
 .PHONY: help demo lint types full gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
 
 help:
-	@echo 'make demo       set up, then render every module into out/demo.png'
+	@echo 'make demo       set up, then render every module into out/demo.png: 10 seconds after the set-up'
 	@echo 'make quick      format, lint, and the tests that are not slow: 1 minute on two cores'
-	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 3 minutes on two cores'
+	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 4 minutes on two cores'
 	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 1 minute on two cores'
 	@echo 'make fuzz       load 800 damaged files of 16 kinds: 2 minutes'
-	@echo 'make docs       build the documentation into docs/_build/html: 1 minute'
-	@echo 'make bench      time every pass: 2 minutes'
+	@echo 'make docs       build the documentation into docs/_build/html: several minutes, as it runs the examples'
+	@echo 'make bench      time every pass: 1 minute'
 	@echo 'make clean      remove the files that were built; make distclean also removes .venv'
-	@echo 'PYTHON=...      the Python (3.11 or newer) that .venv is made from; the set-up takes 2 minutes, once'
+	@echo 'PYTHON=...      the Python (3.11 or newer) that .venv is made from'
 	@echo 'WORKERS=...     the number of test processes; by default one for each core, at most 8'
 
 demo: $(RUNTIME)
