@@ -119,7 +119,7 @@ def main(stage: str) -> None:
         if stage == "dev":
             offer_libatomic()
         pip_install("pip>=25.1")  # the first that knows --group
-        extras = "[tune,mitsuba,notebook]" if stage == "dev" else ""  # the tests try every extra for real
+        extras = "[tune,mitsuba,notebook,draco]" if stage == "dev" else ""  # the tests try every extra for real
         pip_install("--group", stage, "--editable", f".{extras}")
 
 
