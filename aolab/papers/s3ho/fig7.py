@@ -8,16 +8,17 @@ from ...pipeline.api import shared_lab
 from ..closeups import over_background
 from ..figure import Figure, Need, figure
 from ..pixels import noise
-from .room import RADIUS, colour_error, draws, in_shadow, methods, room, traced, variants
+from .room import KINDS, RADIUS, colour_error, draws, in_shadow, methods, room, traced, variants
 
 DIRECTIONS = 32
 
 
 def fig7(size: Size = (400, 225), rays: int = 1024, seeds: int = 8) -> Figure:
-    """The room by rays of the same radius (RTDO) and by the methods, with 32 directions of two points each.
+    """The room by rays of the same radius (RTDO in the paper), and by the methods with 32 directions of two points.
 
-    Numbers: the error of colour in local shadows, of the mean over seeds; and the noise, raw, raw in shadows, and
-    filtered. SSAO, whose shadows have the colours of the open surface, is the measure of the errors.
+    Numbers: the colour error in local shadows, of the mean over seeds; and the relative noise: unfiltered, unfiltered
+    in shadows, and filtered. The colour errors are compared with SSAO's, whose shadows have the colours of the open
+    surface.
     """
     truth = traced(size, rays)
     shaded = in_shadow(truth)
@@ -33,7 +34,7 @@ def fig7(size: Size = (400, 225), rays: int = 1024, seeds: int = 8) -> Figure:
         }
 
     needs = []
-    for kind, name in {"with the defaults": "", "as printed": " as printed"}.items():
+    for kind, name in KINDS.items():
         for method in ("S3HO", "SSDO"):
             ratio = colours[method + name] / colours["SSAO"]
             needs.append(Need(f"{method}'s colour error in shadows over SSAO's, {kind}", ratio, below=0.6))

@@ -29,8 +29,8 @@ OTHERS: dict[str, Module] = {"SSDO + 1 bounce of patches, 8 steps": BOUNCE.repla
 def fig13(size: Size = (480, 270), rays: int = 256) -> Figure:
     """The stage beside its truth: direct and ambient light and one bounce of both, all within the radius.
 
-    Numbers: the RMSE of the radiance over pixels with a surface, which each step of the method is to lower. The
-    materials are of a middle grey. Among white ones, also told, occlusion without a bounce is far too dark.
+    Numbers: the RMSE of the radiance over pixels with a surface. The materials are of a middle grey; the JSON file has
+    the errors among white ones too, where occlusion without a bounce is far too dark.
     """
     frames, truth = _beside_truth(stage(albedo=0.4), size, rays)
     errors = _errors(frames, truth)
