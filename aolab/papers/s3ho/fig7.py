@@ -22,9 +22,10 @@ def fig7(size: Size = (400, 225), rays: int = 1024, seeds: int = 8) -> Figure:
     """
     truth = traced(size, rays)
     shaded = in_shadow(truth)
+    others = variants(DIRECTIONS)
     ssao = SSAO(radius=RADIUS, directions=DIRECTIONS, steps=2)
     colours, noises = {}, {}
-    for name, module in {"SSAO": ssao, **methods(DIRECTIONS), **variants(DIRECTIONS)}.items():
+    for name, module in {"SSAO": ssao, **methods(DIRECTIONS), **others}.items():
         raw = draws(module.replace(filter="none"), size, seeds)
         colours[name] = colour_error(np.mean(raw, axis=0), truth["ambient"], shaded)
         noises[name] = {
@@ -46,7 +47,7 @@ def fig7(size: Size = (400, 225), rays: int = 1024, seeds: int = 8) -> Figure:
         f"{alike[0]:.2f} with the blocked sum, and {alike[1]:.2f} as printed"
     )
     pictures = [(f"rays, {rays} a pixel", over_background(truth["ambient"], truth))]
-    for name, module in methods(DIRECTIONS).items():
+    for name, module in {**methods(DIRECTIONS), "SSDO, blurred alike": others["SSDO, blurred alike"]}.items():
         caption = f"{name}: colours off by {colours[name]:.3f}, raw noise {noises[name]['raw']:.1%}"
         pictures.append((caption, shared_lab().render(room(), module, size=size).image))
     claim = "S3HO's and SSDO's shadows have the colours that rays find; S3HO's have less noise at equal samples"
