@@ -15,7 +15,7 @@ CLOSEUPS = (((0.2, 0.65), 32), ((0.3, 0.25), 32), ((0.57, 0.6), 32), ((0.57, 0.6
 NEAR = 0.1 * RADIUS  # of a crease
 
 
-def fig8(size: Size = (240, 135), rays: int = 256, seeds: int = 4, frames: int = 16) -> Figure:
+def fig8(size: Size = (240, 135), rays: int = 128, seeds: int = 4, frames: int = 8) -> Figure:
     """Close-ups of the room with 32 and with 8 directions.
 
     Numbers, next to the room's right-angled creases: the colour error, and the distance between the colours of the two
