@@ -1,4 +1,4 @@
-"""Overviews and close-ups of one large picture; pictures of the truth's light."""
+"""Overviews and close-ups of a large picture; pictures of the truth's light."""
 
 import numpy as np
 from PIL import Image
@@ -8,23 +8,23 @@ from ..pipeline.frame import Frame
 from ..truth.picture import over_environment, shown
 from .pixels import view_of
 
-ZOOM = 3  # a picture with close-ups is rendered at so many times the size at which it is shown
+ZOOM = 3  # a picture with close-ups is rendered at this multiple of the size at which it is shown
 
 
 def zoomed(size: Size) -> Size:
-    """The size at which a picture is rendered that is shown at `size` and has close-ups."""
+    """The size of the render, if its overview and its close-ups are shown at `size`."""
     return ZOOM * size[0], ZOOM * size[1]
 
 
 def overview(picture: np.ndarray) -> np.ndarray:
-    """A picture (H, W, 3) of `zoomed` size, all of it at the size at which it is shown."""
+    """A render of `zoomed` size, (H, W, 3) uint8, reduced to the size at which it is shown."""
     return np.asarray(Image.fromarray(picture).reduce(ZOOM))
 
 
 def closeup(picture: np.ndarray, middle: tuple[float, float]) -> np.ndarray:
-    """A part of a picture (H, W, 3) of `zoomed` size, pixel by pixel, as large as its `overview`.
+    """A part of a render of `zoomed` size, (H, W, 3) uint8, without any change of its pixels.
 
-    `middle`: x, y as shares of the picture's sides.
+    It is as large as the `overview`. `middle`: x, y as shares of the render's sides.
     """
     height, width = (side // ZOOM for side in picture.shape[:2])
     left, top = (

@@ -1,4 +1,4 @@
-"""A reproduced figure: a picture, numbers, and the bounds on them that the paper's claim needs."""
+"""A reproduced figure: a picture, numbers, and the bounds that the paper's claim needs."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -46,9 +46,8 @@ def verdict(needs: Sequence[Need]) -> str:
 
 @dataclass(frozen=True, eq=False)
 class Figure:
-    """`claim` is the paper's, in a sentence; it holds if all `needs` are met. `numbers` are plain values for JSON.
-
-    `finding` is a sentence that the numbers add to the claim, or nothing.
+    """`claim` is the paper's, as a sentence. It holds if all `needs` are met, those of aolab's defaults and those of
+    the paper's own settings. `numbers` are plain values for JSON. `finding`: a further result, as a sentence, or "".
     """
 
     picture: Image.Image
@@ -86,5 +85,5 @@ def figure(
 
 
 def title(heading: str, claim: str, needs: Sequence[Need], finding: str = "") -> str:
-    """The text above a figure's picture: it gives the verdict, as the numbers do."""
+    """The text above a figure's picture. Its verdict is that of the JSON file."""
     return f"{heading}. Claim: {claim}. Verdict: {verdict(needs)}." + (f" Finding: {finding}." if finding else "")

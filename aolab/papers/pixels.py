@@ -1,4 +1,4 @@
-"""Measures over pixels, and where in the scene pixels are."""
+"""Measures over pixels, and the positions of pixels in the scene."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,10 @@ def rmse(one: np.ndarray, other: np.ndarray, where: np.ndarray) -> float:
 
 
 def noise(draws: Sequence[np.ndarray], where: np.ndarray) -> float:
-    """Standard deviation among `draws`, (H, W[, channels]) of different seeds, over their mean; both of all `where`."""
+    """Relative noise: the standard deviation among `draws`, divided by their mean, over the pixels `where` (H, W).
+
+    `draws`: (H, W[, channels]), each with another seed.
+    """
     seen = np.array([draw[where] for draw in draws], np.float64)
     return float(np.sqrt(seen.var(axis=0, ddof=1).mean()) / seen.mean())
 
@@ -28,7 +31,7 @@ def chromaticity(rgb: np.ndarray) -> np.ndarray:
 
 
 def world_positions(frame: Frame) -> np.ndarray:
-    """(H, W, 3): the surface at each pixel's centre; the eye where nothing was drawn."""
+    """(H, W, 3): the surface at each pixel's centre, world space; the eye at background pixels."""
     view = view_of(frame)
     world_from_view = np.linalg.inv(view.camera.view_from_world)
     width, height = view.size

@@ -1,4 +1,4 @@
-"""`aolab reproduce`: a picture and its numbers for each figure; unknown ones are refused before the work."""
+"""`aolab reproduce`: a picture and its numbers for each figure; unknown figures are refused before the work."""
 
 import json
 import sys
@@ -47,7 +47,7 @@ def test_an_unknown_paper_or_figure_names_the_nearest():
         figures("ssdo", "fig77")
 
 
-def test_what_cannot_be_written_is_refused_before_the_work(tmp_path):
+def test_files_that_cannot_be_written_are_refused_before_the_work(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(FileError, match=r"cannot make the folder .*file"):
         next(reproduce("ssdo", "fig3", tmp_path / "file"))
@@ -69,7 +69,7 @@ def shell(monkeypatch, *arguments) -> object:
     return ended.value.code or 0
 
 
-def test_the_shell_says_what_holds(gl, monkeypatch, capsys, tmp_path):
+def test_the_shell_prints_claim_and_verdict(gl, monkeypatch, capsys, tmp_path):
     assert shell(monkeypatch, "ssdo", "fig14", "--size", "160x90", "-o", tmp_path) == 0
     printed = capsys.readouterr().out
     assert printed.startswith(f"{tmp_path}/fig14.png: A smaller radius")

@@ -1,4 +1,4 @@
-"""S3HO's figures at low resolution: what holds, and the numbers that a claim does not need. Times are not asserted."""
+"""S3HO's figures at low resolution: their claims, and the numbers beyond the claims. Times are not asserted."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from aolab.papers import s3ho
 
 pytestmark = pytest.mark.figures
 
-# S3HO is calmer than SSDO where its light is blurred more; by the same estimator and blur it is not
+# S3HO has less noise than SSDO if its light is blurred more; with the same estimator and blur it has the same
 UNMET = {
     "fig7": {"S3HO's noise over SSDO's, with the defaults"},
     "fig8": {

@@ -1,4 +1,4 @@
-"""SSDO's figures at low resolution: what holds, and the numbers that a claim does not need. Times are not asserted."""
+"""SSDO's figures at low resolution: their claims, and the numbers beyond the claims. Times are not asserted."""
 
 import numpy as np
 import pytest
@@ -71,7 +71,7 @@ def test_table1_stands_beside_the_papers(draw):
 
 
 def test_table1s_printed_percentages_are_the_frame_rate_that_is_lost():
-    """As the table's docstring says, and which of them do not follow."""
+    """Three of them do not follow from the printed frame rates (the docstring of `table1`)."""
     wrong = {}
     for ssao, *others in PAPER.values():
         for fps, printed in zip(others[:2], others[2:], strict=True):

@@ -1,7 +1,7 @@
 """S3HO: Herholz, Schairer, Schilling and Straßer 2012, "Screen Space Spherical Harmonic Occlusion".
 
 Each function takes the size of a picture, or of the table's measurement, and returns a `Figure`. Figures 2 and 4 are
-drawings, of what `aolab.glyph` shows for any pixel.
+drawings of glyphs; `aolab.glyph` draws them for any pixel.
 """
 
 from collections.abc import Callable

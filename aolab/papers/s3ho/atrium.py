@@ -12,7 +12,7 @@ SUN = 6.0  # degrees across, as by default in a sky of aolab's own
 
 
 def atrium() -> Scene:
-    """Lit by its environment alone, into which the sun has moved: the light that the methods are about."""
+    """The atrium without lights: the sun is a disc in the environment, because the methods occlude the environment."""
     scene = load("atrium")
     (sun,) = scene.lights
     assert isinstance(sun, DirectionalLight)

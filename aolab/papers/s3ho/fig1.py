@@ -1,4 +1,4 @@
-"""S3HO, figure 1: what SSAO does to a picture."""
+"""S3HO, figure 1: the effect of SSAO on a picture."""
 
 import numpy as np
 
@@ -15,9 +15,9 @@ from .atrium import RADIUS, atrium
 def fig1(size: Size = (480, 270), rays: int = 256) -> Figure:
     """Diffuse lighting alone, SSAO's occlusion factor, and both; and the factor by rays.
 
-    Numbers: the mean occlusion in that of rays, and the correlation of the two; among the pixels with nothing near, the
-    share that occlusion darkens; the largest factor; and the largest differences: of the three colours' factors, of the
-    factor from the visibility, and of the factor when the sky is turned by half.
+    Numbers: the mean occlusion as a multiple of the rays', and their correlation; the darkened share of the pixels with
+    nothing near; the largest factor; and the largest differences between the three colours' factors, between factor and
+    visibility, and between the factors before and after a half turn of the sky.
     """
     scene = atrium()
     assert scene.environment is not None  # Scene fills it in
@@ -59,5 +59,5 @@ def fig1(size: Size = (480, 270), rays: int = 256) -> Figure:
 
 
 def _factor(diffuse: Frame, both: Frame) -> np.ndarray:
-    """(n, 3): by what occlusion multiplies the light of each surface pixel."""
+    """(n, 3): the factor of occlusion at each surface pixel."""
     return both["radiance"][both.mask] / np.maximum(diffuse["radiance"][both.mask], 1e-6)

@@ -1,4 +1,4 @@
-"""S3HO, figure 3: two points under one light, each occluded from another side."""
+"""S3HO, figure 3: two points under the same light, occluded from opposite sides."""
 
 from ...gl.texture import Size
 from ...notebook.reading import glyph
@@ -16,10 +16,10 @@ POINTS = {"p1": ("occluded from the right", 1), "p2": ("occluded from the left",
 
 
 def fig3(size: Size = (400, 225), rays: int = 4096) -> Figure:
-    """One point on the floor under one light, with a wall to its right (p1), and with one to its left (p2).
+    """A point on the floor with a wall to its right (p1), and with a wall to its left (p2), under the same light.
 
-    Numbers: red over blue of the light that the point reflects, with S3HO, with the coefficients that rays find, and
-    with all open, which is the colour that SSAO, a factor, leaves unchanged; and the visibility.
+    Numbers: the visibility, and the ratio of red to blue in the reflected light: with S3HO, with the coefficients that
+    rays find, and without occlusion. SSAO, a factor, does not change the last ratio.
     """
     numbers, pictures, needs = {}, [], []
     for name, (where, side) in POINTS.items():
@@ -51,7 +51,7 @@ def fig3(size: Size = (400, 225), rays: int = 4096) -> Figure:
 
 
 def _wall(side: int) -> Scene:
-    """A floor, and a wall on this side of the origin."""
+    """A floor, and a wall on the `side` (of x) of the origin."""
     paper = Material((0.75, 0.75, 0.75))
     wall = Instance(block((0.4, 1.01, 1.4), paper, "wall"), placed(side * 0.35, -0.01, 0))
     floor = Instance(block((30, 0.2, 30), paper, "floor"), placed(0, -0.2, 0))

@@ -1,4 +1,4 @@
-"""S3HO, figure 5: three boxes between two lamps, which are then swapped."""
+"""S3HO, figure 5: three boxes between two lamps, before and after the lamps are swapped."""
 
 import numpy as np
 
@@ -17,11 +17,11 @@ POINTS = {"p1": (-1.75, 0.0, 0.65), "p2": (1.75, 0.0, 0.65)}
 
 
 def fig5(size: Size = (480, 270), rays: int = 4096) -> Figure:
-    """Three boxes between a pink lamp and a turquoise one; the same estimate, lit again with the two swapped.
+    """Three boxes between a pink and a turquoise lamp; the same estimate, relit with the lamps swapped.
 
-    Scene and camera are their own mirror images, so the swapped picture is the mirrored one. Numbers: how far it is not
-    (root mean square), in the change that swapping makes; and red over green of the irradiance at the points p1 and p2,
-    from S3HO's coefficients, from those that rays find, and if all were open.
+    Scene and camera are mirror-symmetric, so that swapping the lamps mirrors the picture. Numbers: the root mean square
+    difference from the mirrored picture, and the change by swapping; the ratio of red to green at the points p1 and p2:
+    with S3HO, with the coefficients that rays find, and without occlusion.
     """
     scene, swapped = (without_shadow_maps(load("boxes", swap=swap, ambient=0.0)) for swap in (False, True))
     left = drawn(scene, LAMPS, size)

@@ -1,4 +1,4 @@
-"""S3HO, figure 6: towers in the sun, with S3HO and with SSAO."""
+"""S3HO, figure 6: towers in the sun, by S3HO and by SSAO."""
 
 import numpy as np
 
@@ -19,18 +19,17 @@ from .local import HARMONICS, drawn, without_shadow_maps
 
 CITY = Camera((1.4, 11.0, 9.0), (0.2, 0, 0.2), fov=30)  # from above, so that both sides of streets are seen
 TOWERS = S3HO(radius=0.8, directions=32, steps=16)  # scene units: as wide as a street
-OPEN = 1e-6  # scene units: within this radius there is nothing, so that every direction is open
-HALF_OPEN = (0.3, 0.8)  # visibilities between which a surface counts as being in a local shadow
+OPEN = 1e-6  # scene units: a radius without any occluder
+HALF_OPEN = (0.3, 0.8)  # the visibilities of a local shadow
 CLOSEUPS = {"away from the sun": (0.73, 0.55), "towards the sun": (0.4, 0.5)}  # their middles, x, y, in pictures
 
 
 def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
-    """Towers under a blue sky with a yellow sun: with S3HO, times SSAO's visibility, and with coefficients by rays.
+    """Towers under a blue sky with a yellow sun, by S3HO, by SSAO, and by S3HO with the coefficients that rays find.
 
-    As in the paper, SSAO's factor multiplies all of the diffuse light, that of the sun included: the open surface's, of
-    the same lobe and sky. Both have one estimate, and so the same samples, filter and mean.
-    Numbers: over flat surfaces in half shadow whose open side is turned away from the sun, or towards it, the luminance
-    in that of SSAO, and blue over red.
+    As in the paper, SSAO's factor multiplies all diffuse light, the sun's included. SSAO and S3HO use the same
+    estimate, and so the same samples and filter. Numbers: luminance, and the ratio of blue to red, on horizontal
+    surfaces in local shadows: on those that are open away from the sun, and on those that are open towards the sun.
     """
     scene, large = without_shadow_maps(load("skyscrapers")).replace(camera=CITY), zoomed(size)
     frame, open_ = (
@@ -55,7 +54,7 @@ def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
     images = {
         "S3HO": frame.image,
         "SSAO": shown(factor),
-        "S3HO with coefficients by rays": over_background(radiance["rays"], truth),
+        "rays' coefficients": over_background(radiance["rays"], truth),
     }
     claim = (
         "Local shadows that are open away from the sun are darker and bluer than SSAO's, those towards it are lighter"
@@ -67,7 +66,7 @@ def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
 
 
 def _lit(truth: Frame) -> np.ndarray:
-    """(H, W, 3): the radiance under S3HO's light, from the truth's coefficients; glsl/s3ho.ambient.frag and .direct."""
+    """(H, W, 3): S3HO's radiance from the truth's coefficients; the twin of s3ho.ambient.frag and s3ho.direct.frag."""
     assert truth.scene is not None  # the reference has one
     assert truth.scene.environment is not None  # Scene fills it in
     transfer = np.concatenate([truth[name] for name in HARMONICS], axis=-1)
@@ -80,7 +79,7 @@ def _lit(truth: Frame) -> np.ndarray:
 
 
 def _light(where: np.ndarray, radiance: dict[str, np.ndarray]) -> dict[str, dict[str, float]]:
-    """Luminance and colour of the mean radiance `where`, by the name of the method."""
+    """Luminance and colour of the mean radiance `where`, by method."""
     light = {name: value[where].mean(axis=0) for name, value in radiance.items()}
     return {
         "luminance": {name: float(rgb @ LUMINANCE) for name, rgb in light.items()},
@@ -89,7 +88,7 @@ def _light(where: np.ndarray, radiance: dict[str, np.ndarray]) -> dict[str, dict
 
 
 def _sides(truth: Frame) -> dict[str, np.ndarray]:
-    """(H, W) bool: flat surfaces in half shadow whose mean open direction leans away from the sun, and towards it."""
+    """(H, W) bool: horizontal surfaces in local shadows whose mean open direction leans from the sun, or towards it."""
     assert truth.scene is not None  # the reference has one
     x, _, z = _sun(truth.scene).direction
     first = truth["sh0"]  # band 1 is the mean direction: see `aolab.maths.harmonics` for its order and signs

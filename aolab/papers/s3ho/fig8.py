@@ -8,19 +8,19 @@ from ...pipeline.frame import Frame
 from ..closeups import closeup, over_background, zoomed
 from ..figure import Figure, Need, figure
 from ..pixels import chromaticity, noise, world_positions
-from .room import BACK, RADIUS, SIDE, colour_error, converged, draws, in_shadow, methods, room, traced
+from .room import BACK, KINDS, RADIUS, SIDE, colour_error, converged, draws, in_shadow, methods, room, traced
 
 # x, y in the picture, and directions: two right angles, and twice the vase
 CLOSEUPS = (((0.2, 0.65), 32), ((0.3, 0.25), 32), ((0.57, 0.6), 32), ((0.57, 0.6), 8))
 NEAR = 0.1 * RADIUS  # of a crease
 
 
-def fig8(size: Size = (240, 135), rays: int = 256, seeds: int = 4, frames: int = 16) -> Figure:
-    """Close-ups of the room, with 32 directions and with 8.
+def fig8(size: Size = (240, 135), rays: int = 128, seeds: int = 4, frames: int = 8) -> Figure:
+    """Close-ups of the room with 32 and with 8 directions.
 
-    Numbers: next to the room's creases, the error of colour, and how far apart the colours of the two sides are: at a
-    right angle bent normals and cones are the same on both, and SSBN gives both the light from half-way. With 8
-    directions: the noise after the filter, and how much colours in shadows change from 32 directions to 8.
+    Numbers, next to the room's right-angled creases: the colour error, and the distance between the colours of the two
+    sides. Bent normals and cones are equal on both sides, so that SSBN gives both sides the light from half-way. With 8
+    directions: the noise after the filter, and the change of the colours in shadows from 32 to 8 directions.
     """
     large = zoomed(size)
     truth = traced(large, rays)
@@ -33,8 +33,26 @@ def fig8(size: Size = (240, 135), rays: int = 256, seeds: int = 4, frames: int =
         errors[name], apart[name] = float(np.linalg.norm(colours - right, axis=-1).mean()), _apart(colours)
         filtered = noise(draws(module.replace(directions=8), large, seeds), truth.mask)
         few[name] = {"filtered_noise": filtered, "change_of_colour": colour_error(eight, many, shaded)}
+    claim = (
+        "In right-angled corners SSBN's colours are farther off than S3HO's, and too much alike on both sides; "
+        "with 8 directions S3HO is still smooth and keeps its colours, and SSDO is not"
+    )
+    off = ", ".join(f"{name} {errors[name]:.3f}" for name in sorted(errors, key=lambda name: errors[name]))
+    finding = f"In corners, colours are off by: {off}"
+    numbers = {
+        "colour_error_in_corners": errors,
+        "colour_between_the_sides": apart,
+        "with_8_directions": few,
+        "rays": rays,
+    }
+    return figure(
+        "S3HO, Fig. 8", claim, _needs(errors, apart, few), numbers, _pictures(truth, large), len(errors) + 1, finding
+    )
+
+
+def _needs(errors: dict[str, float], apart: dict[str, float], few: dict[str, dict[str, float]]) -> list[Need]:
     needs = []
-    for kind, name in {"with the defaults": "", "as printed": " as printed"}.items():
+    for kind, name in KINDS.items():
         s3ho, ssdo, ssbn = (method + name for method in ("S3HO", "SSDO", "SSBN"))
         needs += [
             Need(f"SSBN's colour error in corners over S3HO's, {kind}", errors[ssbn] / errors[s3ho], above=1.15),
@@ -51,19 +69,7 @@ def fig8(size: Size = (240, 135), rays: int = 256, seeds: int = 4, frames: int =
         for what in ("filtered_noise", "change_of_colour"):
             ratio = few[s3ho][what] / few[ssdo][what]
             needs.append(Need(f"S3HO's {what.replace('_', ' ')} over SSDO's, N = 8, {kind}", ratio, below=0.5))
-    claim = (
-        "In right-angled corners SSBN's colours are farther off than S3HO's, and too much alike on both sides; "
-        "with 8 directions S3HO is still smooth and keeps its colours, and SSDO is not"
-    )
-    off = ", ".join(f"{name} {errors[name]:.3f}" for name in sorted(errors, key=lambda name: errors[name]))
-    finding = f"In corners, colours are off by: {off}"
-    numbers = {
-        "colour_error_in_corners": errors,
-        "colour_between_the_sides": apart,
-        "with_8_directions": few,
-        "rays": rays,
-    }
-    return figure("S3HO, Fig. 8", claim, needs, numbers, _pictures(truth, large), len(errors) + 1, finding)
+    return needs
 
 
 def _pictures(truth: Frame, large: Size) -> list[tuple[str, np.ndarray]]:
@@ -81,7 +87,7 @@ def _pictures(truth: Frame, large: Size) -> list[tuple[str, np.ndarray]]:
 
 
 def _creases(truth: Frame) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Where two of floor, back and side meet: the pixels of the one, and of the other, that are near, (H, W) bool."""
+    """The pixels near each crease of floor, back and side: on its one side and on its other, (H, W) bool."""
     x, y, z = np.moveaxis(world_positions(truth), -1, 0)
     planes = [(up, np.abs(distance)) for up, distance in zip((1, 2, 0), (y, z - BACK, x - SIDE), strict=True)]
     normal = truth.world_normal()
@@ -91,7 +97,7 @@ def _creases(truth: Frame) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _colours(ambient: np.ndarray, creases: list[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
-    """(creases, 2, 3): the chromaticity of the mean light on both sides of each."""
+    """(creases, 2, 3): the chromaticity of the mean light on both sides of each crease."""
     return chromaticity(np.array([[ambient[side].mean(axis=0) for side in crease] for crease in creases]))
 
 

@@ -14,6 +14,7 @@ from ..closeups import closeup, over_background, overview, zoomed
 from ..figure import Figure, Need, figure
 from ..pixels import noise, rmse
 from .atrium import RADIUS, atrium
+from .room import KINDS
 
 S3HOGI = S3HO(radius=RADIUS, directions=32, steps=2, indirect=True)
 BOUNCE = SSDO(radius=RADIUS, directions=32, steps=2, bounces=1)
@@ -31,9 +32,9 @@ FOUNTAIN = (0.52, 0.62)  # x, y in the picture
 def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
     """The atrium with one bounce, and its diffuse light without textures and before the filter, beside rays.
 
-    Numbers: of the light with its bounce, the root mean square difference from rays, in their root mean square; of the
-    bounce, the mean in that of rays; the relative noise of both together, and of the bounce alone; with the sun, and
-    under the sky alone. Two points a direction miss much of what is near: the bounce is less than half of rays'.
+    Numbers: the root mean square difference of the light from the rays', as a share of the rays' root mean square; the
+    mean bounce, as a multiple of the rays'; the relative noise of the light with its bounce, and of the bounce alone;
+    with the sun, and under the sky alone. Two points per direction miss many near occluders: the bounce is too dark.
     """
     large, scene = zoomed(size), atrium()
     truth = reference(scene, size=large, like=BOUNCE, rays=rays, buffers=("ambient", "indirect"))
@@ -45,7 +46,7 @@ def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
     }
     beside = {name: _beside(some, truth) for name, some in draws.items()}
     needs = []
-    for kind, name in {"with the defaults": "", "as printed": " as printed"}.items():
+    for kind, name in KINDS.items():
         s3ho, ssdo = "S3HO" + name, "SSDO" + name
         ratio = beside[s3ho]["bounce_over_rays"] / beside[ssdo]["bounce_over_rays"]
         needs.append(Need(f"S3HO's mean bounce over SSDO's, {kind}", ratio, 0.7, 1.4))
@@ -73,7 +74,7 @@ def fig9(size: Size = (320, 180), rays: int = 64, seeds: int = 4) -> Figure:
 def _pictures(
     draws: dict[str, list[Frame]], noises: dict[str, dict[str, float]], truth: Frame
 ) -> list[tuple[str, np.ndarray]]:
-    """In rows: the filtered picture; the light without textures, unfiltered; a part of that."""
+    """In rows: the filtered picture; the light without textures, unfiltered; a close-up of that light."""
     right = shown(GREY * _light(truth))
     rows = [
         [("rays", overview(over_background(truth["ambient"] + truth["indirect"], truth)))],
@@ -110,7 +111,7 @@ def _draws(scene: Scene, module: Module, size: Size, seeds: int) -> list[Frame]:
 
 
 def _untextured(frame: Frame, buffer: str) -> np.ndarray:
-    """(H, W, 3): the light of a buffer as surfaces of albedo 1 would reflect it."""
+    """(H, W, 3): a buffer's light as a surface of albedo 1 reflects it."""
     return frame[buffer] / np.maximum(frame["albedo"][..., :3], 1e-3)
 
 

@@ -1,4 +1,4 @@
-"""Light whose shadows are local occlusion alone, for figures 3, 5 and 6; and the truth at single points."""
+"""Parts of S3HO's figures 3, 5 and 6: lights without shadow maps, and the truth at single points."""
 
 from dataclasses import replace
 
@@ -26,12 +26,12 @@ def without_shadow_maps(scene: Scene) -> Scene:
 
 
 def drawn(scene: Scene, module: S3HO, size: Size, accumulate: int = 32) -> Frame:
-    """A mean of so many frames that noise is no part of the comparison."""
+    """The mean of so many frames that noise does not matter."""
     return shared_lab().render(scene, module, size=size, accumulate=accumulate)
 
 
 def traced_glyph(frame: Frame, pixel: tuple[int, int], like: S3HO, rays: int) -> Glyph:
-    """The glyph at a pixel (column, row) of `frame`, from the coefficients that rays find at that point."""
+    """The glyph at a pixel (column, row) of `frame`, with the coefficients that rays find at its point."""
     point = world_positions(frame)[pixel[1], pixel[0]]
     camera = replace(frame.camera, target=tuple(point), fov=0.2)  # a narrow view, whose middle is the point
     truth = reference(frame.scene, size=(5, 5), camera=camera, like=like, rays=rays, buffers=HARMONICS)
@@ -39,12 +39,12 @@ def traced_glyph(frame: Frame, pixel: tuple[int, int], like: S3HO, rays: int) ->
 
 
 def open_irradiance(point: Glyph) -> np.ndarray:
-    """(3,): the irradiance at a glyph's point if nothing were near."""
+    """(3,): the irradiance at a glyph's point without any occlusion."""
     return point.light.T @ clamped_cosine(point.normal)
 
 
 def marked(image: np.ndarray, points: dict[str, tuple[int, int]]) -> np.ndarray:
-    """A circle around each named pixel (column, row)."""
+    """The image with a circle around each named pixel (column, row)."""
     picture = Image.fromarray(image)
     draw = ImageDraw.Draw(picture)
     for name, (x, y) in points.items():

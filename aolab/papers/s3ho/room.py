@@ -17,7 +17,7 @@ from ...truth import reference
 from ..pixels import chromaticity
 
 RADIUS = 0.6  # scene units: twice a step's height
-SHADED = 0.8  # a visibility below which a pixel counts as in a local shadow
+SHADED = 0.8  # a local shadow has a smaller visibility
 COEFFICIENTS = 16  # of S3HO
 
 # lamps around the room, as in the nave that the paper's probe shows: towards them, degrees across, irradiance
@@ -48,7 +48,7 @@ def probe() -> Environment:
 
 @cache
 def room() -> Scene:
-    """All white: three planes that meet at right angles, steps, a column, boxes, a vase."""
+    """White surfaces: three planes that meet at right angles, steps, a column, boxes, a vase."""
 
     def put(mesh: Mesh, x: float, y: float, z: float, turn: float = 0.0) -> Instance:
         return Instance(mesh, placed(x, y, z, turn=turn))
@@ -68,11 +68,11 @@ def room() -> Scene:
 
 
 def methods(directions: int) -> dict[str, Module]:
-    """With the defaults of aolab, and as printed; at equal samples, and with the paper's filter.
+    """The methods with aolab's defaults, and as printed; with equal samples and the paper's filter.
 
-    The defaults of S3HO and SSDO sum the light of the blocked directions; the papers sum that of the open ones. The
-    default of SSBN weights directions by their cosine; the paper's directions are uniform. SSDO's map is blurred to the
-    solid angle of a sample, 2π/N; the paper's was blurred as well, by an amount that it does not give.
+    By default S3HO and SSDO sum the blocked directions; the papers sum the open ones. By default SSBN weights
+    directions by their cosine; the paper's directions are uniform. SSDO's map is blurred to the solid angle of a
+    sample, 2π/N. The paper's map was blurred too, but the paper does not state by how much.
     """
     common = {"radius": RADIUS, "directions": directions, "steps": 2, "filter": "bilateral"}
     s3ho, ssdo, ssbn = S3HO(**common), SSDO(**common), SSBN(**common)
@@ -87,7 +87,7 @@ def methods(directions: int) -> dict[str, Module]:
 
 
 def variants(directions: int) -> dict[str, Module]:
-    """SSDO with the light blurred alike, to 4π/16 sr, which S3HO's 16 coefficients tell apart; and with a sharp map."""
+    """SSDO with its map blurred to 4π/16 sr, the resolution of S3HO's 16 coefficients; and with a sharp map."""
     alike = (4 * np.pi / COEFFICIENTS) / (2 * np.pi / directions)
     ssdo = {name: module for name, module in methods(directions).items() if name.startswith("SSDO")}
     return {
@@ -96,12 +96,15 @@ def variants(directions: int) -> dict[str, Module]:
     }
 
 
+KINDS = {"with the defaults": "", "as printed": " as printed"}  # the end of a method's name, by settings
+
+
 def traced(size: Size, rays: int) -> Frame:
     return reference(room(), size=size, like=S3HO(radius=RADIUS), rays=rays, buffers=("visibility", "ambient"))
 
 
 def in_shadow(truth: Frame) -> np.ndarray:
-    """(H, W) bool."""
+    """(H, W) bool: the pixels in local shadows."""
     with np.errstate(invalid="ignore"):
         return truth.mask & (truth["visibility"] < SHADED)
 
@@ -117,5 +120,5 @@ def converged(module: Module, size: Size, frames: int) -> np.ndarray:
 
 
 def colour_error(ambient: np.ndarray, other: np.ndarray, where: np.ndarray) -> float:
-    """The mean distance of chromaticities."""
+    """The mean distance of the chromaticities over the pixels `where`."""
     return float(np.linalg.norm(chromaticity(ambient[where]) - chromaticity(other[where]), axis=-1).mean())

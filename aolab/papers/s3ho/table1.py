@@ -23,14 +23,14 @@ PAPER_BOUNCE = 59.0  # at 32 directions
 
 
 def table1(size: Size = (1280, 720), repeats: int = REPEATS) -> Figure:
-    """The estimates' passes, as in the paper, and whole frames; the atrium, two steps a direction, sums as printed.
+    """The estimates' passes, as in the paper, and whole frames: the atrium, two steps per direction, sums as printed.
 
-    Ratios to SSAO are medians over turns, each of one frame of every row. "+ bounce" is S3HOGI, the senders' pass
-    included.
+    The ratios to SSAO are medians over turns; each turn draws one frame of every row. "+ bounce" is S3HOGI, with the
+    pass of the senders.
 
-    On a CPU (llvmpipe) S3HO costs visibly more than SSAO: the paper's GPU waited for texture reads, and the sums of 16
-    coefficients could fill that time; here the sums are work of their own. At N = 8 the driver unrolls SSAO's loop of 8
-    directions, and not S3HO's.
+    On a CPU (llvmpipe) S3HO costs more than SSAO. The paper's GPU waited for texture reads, and computed the sums of
+    16 coefficients in that time; a CPU does not wait. At N = 8 the driver unrolls SSAO's loop of 8 directions, but not
+    S3HO's.
     """
     scene = load("atrium")
     modules = {directions: _modules(directions) for directions in PAPER}
@@ -58,7 +58,7 @@ def table1(size: Size = (1280, 720), repeats: int = REPEATS) -> Figure:
 
 
 def claimed(ratios: Mapping[int, Mapping[str, float]]) -> tuple[Need, ...]:
-    """From costs over SSAO's by method, for each number of directions."""
+    """The claim's needs, from the costs as multiples of SSAO's, by number of directions and method."""
     needs = []
     for n, ratio in ratios.items():
         needs += [

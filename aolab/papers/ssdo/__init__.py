@@ -1,7 +1,7 @@
 """SSDO: Ritschel, Grosch and Seidel 2009, "Approximating Dynamic Global Illumination in Image Space".
 
-Each function takes the size of a picture, or of the table's largest one, and returns a `Figure`. Figures 2, 5 and 8
-are drawings; 9 to 12 are about section 5, which is not part of the module.
+Each function takes the size of a picture, or of the table's largest picture, and returns a `Figure`. Figures 2, 5 and 8
+are drawings; figures 9 to 12 belong to section 5, which the module does not implement.
 """
 
 from collections.abc import Callable

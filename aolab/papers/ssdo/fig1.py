@@ -1,4 +1,4 @@
-"""SSDO, figure 1: a large scene, and the cost of the method's passes in it."""
+"""SSDO, figure 1: a large scene, and the cost of SSDO's passes."""
 
 import statistics
 from functools import partial
@@ -23,10 +23,10 @@ MODULES: dict[str, Module] = {
 
 
 def fig1(size: Size = (960, 540), repeats: int = REPEATS) -> Figure:
-    """The largest scene with no occlusion, with SSAO, SSDO, and one bounce.
+    """The largest scene without occlusion, with SSAO, with SSDO, and with one bounce.
 
-    Numbers: the cost of the passes there, and among fewer triangles.
-    `detail` 1 and 4 of the atrium have the same shapes, so that the passes see nearly the same picture.
+    Numbers: the cost of the passes, and their cost in the same scene with fewer triangles. `detail` 1 and 4 of the
+    atrium have the same shapes, so that the G-buffers are nearly the same.
     """
     large, small = load("atrium", detail=4), load("atrium", detail=1)
     lab = shared_lab()
@@ -55,5 +55,5 @@ def fig1(size: Size = (960, 540), repeats: int = REPEATS) -> Figure:
 
 
 def claimed(large: float, small: float) -> tuple[Need, ...]:
-    """From the milliseconds of the passes in the two scenes."""
+    """The claim's needs, from the milliseconds of the passes in the two scenes."""
     return (Need("the cost of the passes among many triangles over that among few", large / small, below=1.25),)

@@ -26,11 +26,11 @@ PRINTED_STEPS: dict[str, Module] = {
 OTHERS: dict[str, Module] = {"SSDO + 1 bounce of patches, 8 steps": BOUNCE.replace(senders="patches")}
 
 
-def fig13(size: Size = (480, 270), rays: int = 256) -> Figure:
+def fig13(size: Size = (400, 225), rays: int = 256) -> Figure:
     """The stage beside its truth: direct and ambient light and one bounce of both, all within the radius.
 
-    Numbers: the RMSE of the radiance over pixels with a surface, which each step of the method is to lower. The
-    materials are of a middle grey. Among white ones, also told, occlusion without a bounce is far too dark.
+    Numbers: the RMSE of the radiance over pixels with a surface. The materials are of a middle grey; the JSON file has
+    the errors among white ones too, where occlusion without a bounce is far too dark.
     """
     frames, truth = _beside_truth(stage(albedo=0.4), size, rays)
     errors = _errors(frames, truth)
@@ -44,7 +44,7 @@ def fig13(size: Size = (480, 270), rays: int = 256) -> Figure:
     claim = "Against one-bounce rays the error falls from none to SSAO, to SSDO, to SSDO with a bounce"
     pictures = [(f"{name}: RMSE {errors[name]:.4f}", frame.image) for name, frame in frames.items()]
     pictures.append((f"rays, {rays} a pixel", truth.image))
-    return figure("SSDO, Fig. 13", claim, needs, {"rmse": errors, "rmse_among_white": white, "rays": rays}, pictures, 3)
+    return figure("SSDO, Fig. 13", claim, needs, {"rmse": errors, "rmse_among_white": white, "rays": rays}, pictures, 5)
 
 
 def _beside_truth(scene: Scene, size: Size, rays: int) -> tuple[dict[str, Frame], Frame]:

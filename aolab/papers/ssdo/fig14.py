@@ -12,11 +12,11 @@ from .stage import BOUNCE, PRINTED, drawn, stage
 
 RADII = (0.25, 0.5, 1.0, 2.0)  # scene units
 MODULES: dict[str, Module] = {"SSDO": BOUNCE, "as printed": PRINTED}
-BOUNDS = {"SSDO": (0.8, 1.25), "as printed": (0.3, 1.25)}  # of what is found, over rays'
-SHADED, BRIGHT = 0.95, 0.02  # a shadow's visibility; a bounce's radiance, in the picture's mean
+BOUNDS = {"SSDO": (0.8, 1.25), "as printed": (0.3, 1.25)}  # of occlusion and bounce, as multiples of the rays'
+SHADED, BRIGHT = 0.95, 0.02  # visibility of a shadow; radiance of a bounce, as a share of the picture's mean
 
 
-def fig14(size: Size = (400, 225), rays: int = 64) -> Figure:
+def fig14(size: Size = (320, 180), rays: int = 128) -> Figure:
     """SSDO with one bounce for growing radii, the same as printed, and rays of the same radii.
 
     Numbers: the shares of the surfaces that shadows and bounces reach; the mean occlusion and the mean bounce.

@@ -23,19 +23,31 @@ MODULES: dict[str, Module] = {
 }
 SIDES = {"open to the left": -1, "open to the right": 1}  # of x
 BOXES = {"at the pale box": -1, "at the yellow box": 1}
+Numbers = dict[str, dict[str, float]]
 
 
 def fig3(size: Size = (320, 180), rays: int = 64) -> Figure:
-    """None, SSAO, SSDO, SSDO with one bounce, the same as printed, and rays of the same radius, with close-ups.
+    """None, SSAO, SSDO, SSDO with one bounce, the same as printed, and rays of the same radius; with close-ups.
 
     Numbers: the turn of a shadow's colour, from 0, the colour of the open floor, to 1, that of the open side's light;
-    of the light that the boxes bounce onto the floor, the amount in that of rays, and blue over red.
+    the light that the boxes bounce onto the floor, as a multiple of the rays', and its ratio of blue to red.
     """
     scene, large = stage(), zoomed(size)
     frames = {name: drawn(scene, module, large) for name, module in MODULES.items()}
     buffers = ("visibility", "ambient", "bent_normal", "indirect", "image")
     frames["rays"] = reference(scene, size=large, like=BOUNCE, rays=rays, buffers=buffers)
     turns, bounces = _turns(frames, scene), _bounces(frames)
+    claim = (
+        "SSDO's shadows have the colour of the light from the open side, SSAO's are grey; the yellow box bounces yellow"
+    )
+    pictures = [(name, overview(frame.image)) for name, frame in frames.items()]
+    for middle in CLOSEUPS:
+        pictures += [(f"{name}, close", closeup(frame.image, middle)) for name, frame in frames.items()]
+    numbers = {"turn_to_the_open_sides_colour": turns, "bounce_onto_the_floor": bounces, "rays": rays}
+    return figure("SSDO, Fig. 3", claim, _needs(turns, bounces), numbers, pictures, len(frames))
+
+
+def _needs(turns: Numbers, bounces: dict[str, Numbers]) -> list[Need]:
     needs = [Need("SSAO's largest turn", float(np.abs([*turns["SSAO"].values()]).max()), below=0.02)]
     for side, right in turns["rays"].items():
         needs.append(Need(f"SSDO's turn over rays', {side}", turns["SSDO"][side] / right, 0.85, 1.15))
@@ -47,17 +59,10 @@ def fig3(size: Size = (320, 180), rays: int = 64) -> Figure:
     for name in ("SSDO + 1 bounce", "as printed"):
         yellow, pale = (bounces[name][box]["blue_over_red"] for box in ("at the yellow box", "at the pale box"))
         needs.append(Need(f"blue over red of the bounce, yellow box over pale, {name}", yellow / pale, below=0.3))
-    claim = (
-        "SSDO's shadows have the colour of the light from the open side, SSAO's are grey; the yellow box bounces yellow"
-    )
-    pictures = [(name, overview(frame.image)) for name, frame in frames.items()]
-    for middle in CLOSEUPS:
-        pictures += [(f"{name}, close", closeup(frame.image, middle)) for name, frame in frames.items()]
-    numbers = {"turn_to_the_open_sides_colour": turns, "bounce_onto_the_floor": bounces, "rays": rays}
-    return figure("SSDO, Fig. 3", claim, needs, numbers, pictures, len(frames))
+    return needs
 
 
-def _turns(frames: dict[str, Frame], scene: Scene) -> dict[str, dict[str, float]]:
+def _turns(frames: dict[str, Frame], scene: Scene) -> Numbers:
     """The turn of each frame's `ambient` on the floor, in shadows that are open to one side."""
     truth = frames["rays"]
     shaded = floor(truth) & (np.abs(truth["visibility"] - 0.65) < 0.25)
@@ -79,11 +84,11 @@ def _turn(frame: Frame, where: np.ndarray, scene: Scene, side: int) -> float:
     return float(away @ (half - whole) / ((half - whole) @ (half - whole)))
 
 
-def _bounces(frames: dict[str, Frame]) -> dict[str, dict[str, dict[str, float]]]:
-    """The light that each box bounces onto the floor beside it."""
+def _bounces(frames: dict[str, Frame]) -> dict[str, Numbers]:
+    """The light that each box bounces onto the floor next to it."""
     truth = frames["rays"]
     across, below = world_positions(truth)[..., 0], floor(truth)
-    found: dict[str, dict[str, dict[str, float]]] = {}
+    found: dict[str, Numbers] = {}
     for name in ("SSDO + 1 bounce", "as printed", "rays"):
         found[name] = {}
         for box, x in BOXES.items():

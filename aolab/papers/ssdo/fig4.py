@@ -18,16 +18,16 @@ from ..figure import Figure, Need, figure
 from ..pixels import world_positions
 from .stage import ACCUMULATE, BOUNCE, PRINTED, YELLOW
 
-TOTAL = 105.0  # degrees that the camera goes around, from before the yellow side to behind it
+TOTAL = 105.0  # degrees of the camera's path, from before the yellow side to behind it
 RADIUS = 0.8  # scene units, the height of the box
 MODULES: dict[str, Module] = {"SSDO": BOUNCE.replace(radius=RADIUS), "as printed": PRINTED.replace(radius=RADIUS)}
 
 
 def fig4(size: Size = (400, 225), frames: int = 43, rays: int = 128) -> Figure:
-    """Four frames of a camera path around a box: its yellow side, which lights the floor, turns out of the view.
+    """Four frames of a camera path around a box. Its yellow side lights the floor and turns out of the view.
 
-    Numbers: the bounce on one patch of the floor, frame by frame, in that of the first frame; the first frame's in that
-    of rays; and the fade, the degrees between nine tenths of the first bounce and one tenth.
+    Numbers: the bounce on a patch of the floor in each frame, as a share of the first frame's; the first frame's
+    bounce as a multiple of the rays'; and the fade, the angle in which the bounce falls from nine tenths to one tenth.
     """
     degrees = np.linspace(0, TOTAL, frames).tolist()
     paths = {name: [_bounce(_drawn(size, angle, module)) for angle in degrees] for name, module in MODULES.items()}
@@ -57,8 +57,8 @@ def fig4(size: Size = (400, 225), frames: int = 43, rays: int = 128) -> Figure:
     pictures += [(f"4 times the bounce, rays: {_bounce(t) / right:.2f}", shown(4 * t["indirect"])) for t in truths]
     for name, module in MODULES.items():
         for i in chosen:
-            frame = _drawn(size, degrees[i], module, ACCUMULATE)
-            pictures.append((f"4 times the bounce, {name}: {bounce[name][i]:.2f}", shown(4 * frame["indirect"])))
+            indirect = _drawn(size, degrees[i], module, ACCUMULATE)["indirect"]
+            pictures.append((f"4 times the bounce, {name}: {bounce[name][i]:.2f}", shown(4 * indirect)))
     numbers = {"degrees": degrees, "bounce": bounce, "first_over_rays": first, "fade_in_degrees": fade, "rays": rays}
     return figure("SSDO, Fig. 4", claim, needs, numbers, pictures, 4, finding)
 

@@ -26,8 +26,8 @@ KINDS = {"one layer": "depth", "peeled layers": "layers"}
 def fig6(size: Size = (480, 270)) -> Figure:
     """The shadow of a post on the screen alone, by one depth layer and by peeled ones; beside rays and a shadow map.
 
-    Numbers: the length of the shadow, in that of the shadow of a segment as long as the radius; the share of the true
-    shadow that is found; the area of false shadow, in areas of the true one.
+    Numbers: the length of the shadow, as a multiple of the length that a segment of one radius gives; the found share
+    of the true shadow; and the area of false shadow, as a multiple of the true shadow's area.
     """
     scene = _post()
     lit = scene.replace(lights=(_bulb(),))
@@ -43,7 +43,7 @@ def fig6(size: Size = (480, 270)) -> Figure:
         numbers[name] = [_shadow(frame, truth, radius) for radius, frame in frames.items()]
         for found, frame in zip(numbers[name], frames.values(), strict=True):
             radius, length = found["radius"], found["length_over_a_segments"]
-            # the tip is lost: a sample is looked up a pixel's width above the ground
+            # the shadow's tip is missing: samples start a pixel's width above the ground
             needs.append(Need(f"the shadow's length over a segment's, {name}, radius {radius:g}", length, 0.85, 1.1))
             pictures.append(
                 (f"{name}, radius {radius:g}: {found['found']:.0%} found, {found['false']:.0%} false", frame.image)
@@ -57,7 +57,7 @@ def fig6(size: Size = (480, 270)) -> Figure:
         Need("the false shadow of peeled layers", right["false"], below=0.02),
     ]
     claim = (
-        "The shadow is as long as the radius lets it be; with one layer its false part grows with the radius, "
+        "The radius limits the length of the shadow; with one layer its false part grows with the radius, "
         "and with peeled layers it is the ray-traced shadow"
     )
     return figure("SSDO, Fig. 6", claim, needs, numbers, pictures, 4)
@@ -84,7 +84,7 @@ def _bulb(shadow: bool = True) -> PointLight:
 
 
 def _post() -> Scene:
-    """The bulb casts no shadow of its own: the screen alone is to find the shadow."""
+    """The bulb has no shadow map: the shadow comes from the screen alone."""
     paper = Material((0.75, 0.75, 0.75))
     post = Instance(block((THICK, POST + 0.01, THICK), Material((0.3, 0.45, 0.75)), "post"), placed(0, -0.01, 0))
     ground = Instance(block((30, 0.2, 30), paper, "ground"), placed(0, -0.2, 0))
@@ -98,7 +98,7 @@ def _lit_on_screen(scene: Scene, size: Size, radius: float, occluders: str) -> F
 
 
 def _reach(radius: float) -> float:
-    """How far from the post the ground is still shaded by a segment of length `radius` towards the bulb."""
+    """The length of the shadow on the ground if segments of length `radius` are tested towards the bulb."""
     across, up = THICK / 2 - BULB[0], BULB[1]
     whole = across * POST / (up - POST)
     distance = np.linspace(0, whole, 10_000)

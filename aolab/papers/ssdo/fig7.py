@@ -22,11 +22,11 @@ KINDS = {"a single view": "depth", "four more views": "views", "rays": ""}
 
 
 def fig7(size: Size = (320, 180), rays: int = 128) -> Figure:
-    """The floor around a column that hides another: what the hidden one takes away, and what it bounces.
+    """The floor around a column that hides another column, which casts a shadow and bounces pink light.
 
-    The columns are smooth: flutes are finer than a pixel here, and the bounce among them is out of reach.
-    Numbers, as shares of what rays find: the visibility that goes with the hidden column, and the bounce that goes when
-    it is painted black.
+    The columns are round: flutes would be finer than a pixel, and no screen-space method finds the bounce among them.
+    Numbers, as multiples of the rays': the occlusion that is missing without the hidden column, and the bounce that is
+    missing if the column is black.
     """
     scene = load("colonnade", fluted=False)
     *others, pink = scene.instances
@@ -40,7 +40,7 @@ def fig7(size: Size = (320, 180), rays: int = 128) -> Figure:
         shade[name], bounce[name] = float(lost.sum()), float(gained.sum())
         pictures.append((f"{name}: visibility", gray(_crop(whole["visibility"]))))
         pictures.append((f"{name}: 4 times the bounce", shown(4 * _crop(whole["indirect"]))))
-        pictures.append((f"{name}: 10 times the hidden column's bounce", shown(10 * _crop(np.maximum(gained, 0)))))
+        pictures.append((f"{name}: 10 times the hidden one's", shown(10 * _crop(np.maximum(gained, 0)))))
     found = {
         "shadow": {name: value / shade["rays"] for name, value in shade.items()},
         "bounce": {name: value / bounce["rays"] for name, value in bounce.items()},
@@ -57,7 +57,7 @@ def fig7(size: Size = (320, 180), rays: int = 128) -> Figure:
 
 
 def _with_bounce(scene: Scene, size: Size, occluders: str, rays: int) -> Frame:
-    """By `occluders`, or by rays where there are none."""
+    """The frame with these `occluders`; with "" it is the truth."""
     module = SSDO(radius=RADIUS, directions=16, steps=8, bounces=1)
     if not occluders:
         return reference(scene, size=size, like=module, rays=rays, buffers=("visibility", "indirect"))

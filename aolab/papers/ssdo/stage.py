@@ -1,4 +1,4 @@
-"""The stage of SSDO's figures 3, 13 and 14, and the settings at which they are drawn."""
+"""The stage of SSDO's figures 3, 13 and 14, and their modules."""
 
 from dataclasses import replace
 
@@ -21,15 +21,16 @@ ACCUMULATE = 4  # frames, so that noise is no part of the comparison
 OCCLUSION = SSAO(radius=RADIUS, directions=16, steps=8)
 DIRECTIONAL = SSDO(radius=RADIUS, directions=16, steps=8)
 BOUNCE = DIRECTIONAL.replace(bounces=1)
-# the paper's: one point of random length a direction, the sum over open directions, senders as patches
+# The paper's: one point at a random distance per direction, the sum over open directions, senders as patches. Here too
+# directions have cosine density, and the sums are weighted for it.
 PRINTED = BOUNCE.replace(steps=1, estimator="plain", senders="patches")
 
 
 def stage(albedo: float = PALE) -> Scene:
     """Two pale boxes and a yellow one on a pale floor, pink light from the left and turquoise from the right.
 
-    As in the paper, an environment and one point light with a shadow map light the scene. `albedo` is that of the pale
-    surfaces; the yellow box is scaled along, and keeps its hue.
+    As in the paper, the light is an environment and one point light with a shadow map. `albedo` is that of the pale
+    surfaces; the yellow box is scaled by the same factor, and keeps its hue.
     """
     boxes = load("boxes")
     pale = Material((albedo, albedo, albedo), name="pale")

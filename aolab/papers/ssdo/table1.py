@@ -1,4 +1,4 @@
-"""SSDO, table 1: frames a second."""
+"""SSDO, table 1: frame rates."""
 
 import statistics
 from collections.abc import Mapping, Sequence
@@ -27,17 +27,17 @@ PAPER = {
     ((1600, 1200), 16): (16.8, 15.3, 9.0, 8.9, 46.4),
 }
 PRINTED = SSDO(radius=RADIUS, steps=1, estimator="plain", senders="patches")
-# the largest of the shares that are lost, in percent, and half of the last printed digit
+# the largest printed shares, in percent, plus half of their last digit
 CLAIMED = {"directional_occlusion": 8.9 + 0.05, "one_bounce": 46.4 + 0.05}
 
 
 def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
-    """Whole frames of the largest scene, with one layer and one point a direction, beside the paper's figures.
+    """Whole frames of the largest scene, with one layer and one point per direction, beside the paper's figures.
 
-    The paper's percentages are the share of SSAO's frame rate that is lost, 1 - fps / fps_SSAO, and not the time that
-    is added, which is more; both are told. (Of the twelve printed ones, 0.2, 19.3 and 22.2 do not follow from the frame
-    rates printed beside them, which give -0.4, 18.8 and 42.1.)
-    `size` stands for the paper's largest one, and the others are scaled with it.
+    The paper's percentages are the lost share of SSAO's frame rate, 1 - fps / fps_SSAO. The added time is a larger
+    share; the table gives both. Three of the twelve printed percentages, 0.2, 19.3 and 22.2, do not follow from the
+    printed frame rates, which give -0.4, 18.8 and 42.1. `size` replaces the paper's largest size; the other sizes are
+    scaled by the same factor.
     """
     scene = load("atrium", detail=4)
     rows = [_row(scene, size, paper_size, directions, repeats) for paper_size, directions in PAPER]
@@ -69,7 +69,7 @@ def table1(size: Size = (1600, 1200), repeats: int = REPEATS) -> Figure:
 
 
 def claimed(lost: Mapping[str, Sequence[float]]) -> tuple[Need, ...]:
-    """From the shares of SSAO's frame rate that are lost, in percent, by method."""
+    """The claim's needs, from the lost shares of SSAO's frame rate, in percent, by method."""
     return tuple(
         Need(f"the frame rate lost by {name.replace('_', ' ')}, %, the most", max(lost[name]), below=most)
         for name, most in CLAIMED.items()
