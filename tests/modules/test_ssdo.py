@@ -415,6 +415,29 @@ def test_occluders_of_hidden_senders_block_the_sky(lab):
     assert found["gap"] < 0.4
 
 
+class Tinted(HiddenLight):
+    """Its estimate reads a texture that a pass makes before the samples."""
+
+    def estimate(self) -> Estimate:
+        plain = super().estimate()
+        text = (aolab.paths.glsl() / "ssdo.frag").read_text()
+        text = text.replace("out vec4 open_light;", "out vec4 open_light;\nuniform sampler2D tint;", 1)
+        text = text.replace("open_light = min(", "open_light = texture(tint, vec2(0.5)) * min(", 1)
+        once = Pass("tint", "out vec4 tint;\nvoid main() { tint = vec4(0.5, 0.5, 0.5, 1.0); }", {"tint": "RGBA16F"})
+        return Estimate([Pass("tinted", text, self.outputs)], plain.outputs, once=[once])
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_the_estimate_on_hidden_surfaces_reads_passes_before_the_samples(lab):
+    scene = of(box((-2, 0, -0.2), (2, 1, 0)), camera=Camera((0, 0.5, 3), (0, 0.5, 0), fov=20))
+    white, tinted = (
+        lab.render(scene, kind(radius=1.0, bounces=1, occluders="layers", filter="none"))
+        for kind in (HiddenLight, Tinted)
+    )
+    assert white["bounce"][24, 32, 0] > 0.9
+    np.testing.assert_allclose(tinted["bounce"][24, 32], 0.5 * white["bounce"][24, 32], rtol=HALF)
+
+
 def test_a_bounce_at_half_resolution(lab, boxes):
     sun = DirectionalLight((-1, -1.5, -1), (3.0, 3.0, 3.0))
     scene = replace(boxes, lights=(sun,))
