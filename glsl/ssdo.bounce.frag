@@ -1,7 +1,7 @@
-// SSDO, one bounce: every occluder reflects the direct light stored for its pixel.
+// SSDO, one bounce: every occluder reflects the light that is stored for its pixel.
 // Ritschel, Grosch and Seidel 2009, section 3:
 //   L_ind(P) = Σ ρ/π L_pixel (1 - V(ω_i)) f_i
-// with the form factor f_i of lib/senders.glsl. ρ/π waits for the lighting.
+// with the form factor f_i of lib/senders.glsl. The lighting multiplies by ρ/π.
 //
 // Inputs:  viewZ, viewNormal; sender, the direct and ambient light that leaves each pixel (RGB radiance).
 // Output:  bounce: rgb the irradiance from the senders.

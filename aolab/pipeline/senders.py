@@ -10,6 +10,7 @@ from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.occluders.base import Hidden
 from ..modules.passes import DIRECT, Pass
+from .estimate import steps
 from .lighting import Lights
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
@@ -21,18 +22,24 @@ def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers,
     """`sender`, direct + ambient light of the surfaces that the camera sees; and the state with the light of hidden
     surfaces bound.
     """
-    runner, view, occluders = state.frame.runner, state.frame.view, state.occluders
-    sent = {hidden.sender: _hidden_sender(state.frame, hidden, lights) for hidden in occluders.hidden}
+    frame, occluders = state.frame, state.occluders
+    runner, view = frame.runner, frame.view
+    once: Buffers = {}
+    if occluders.hidden:
+        known = [Bindings("the surfaces", state.large), frame.parameters, *lights.seen_from(view)]
+        once = steps(frame, frame.module.estimate().once, known)
+    given = Bindings("the passes before the samples", once)
+    sent = {hidden.sender: _hidden_sender(frame, hidden, lights, given) for hidden in occluders.hidden}
     bound = replace(occluders.bindings, textures={**occluders.bindings.textures, **sent})
     sender = runner.run(_SENDER, [Bindings("the lighting", lit)], view.size)
     return sender, replace(state, occluders=replace(occluders, bindings=bound))
 
 
-def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights) -> moderngl.Texture:
+def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: Bindings) -> moderngl.Texture:
     """The light that leaves hidden surfaces, in the regions of their views.
 
     The environment's part is that of the module's own estimate, of one sample set and without filter. Samples towards
-    lights are left out.
+    lights are left out. `given` are the textures that the estimate makes before its samples.
     """
     runner, size = frame.runner, hidden.views[0].sheet
     passes = _passes(frame.module)
@@ -42,6 +49,7 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights) -> moder
             Bindings("the surfaces", hidden.surfaces),
             Bindings("the view", uniforms=view.uniforms),
             hidden.occluders,
+            given,
             frame.parameters,
             frame.samples(frame.seeds[0]),
             *lights.seen_from(view),

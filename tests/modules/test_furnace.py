@@ -17,18 +17,18 @@ HALF = 2e-3  # roundings to half floats
 
 @pytest.fixture(scope="module")
 def furnace(wall) -> Scene:
-    """A floor, a wall and a box, white: in the corners between them a bounce may exceed the light."""
+    """A white floor, wall and box; in the corners between them a bounce may exceed the light."""
     meshes = [instance.mesh for instance in wall.instances]
     return small_scenes.of(*meshes, small_scenes.box((0.3, 0, -0.5), (1, 0.7, 0.3)), camera=wall.camera)
 
 
 def physical(module: type[Module]) -> list[dict[str, Any]]:
-    """The defaults, and one or two other choices, but for the patches: as printed, they make energy."""
+    """The defaults, and one or two other choices, without patches, which make energy as printed."""
     return [way for way in contexts(module, "") if way.get("senders") != "patches"]
 
 
 def bounces(module: type[Module]) -> list[dict[str, Any]]:
-    """Each way to turn a bounce on, and that alone."""
+    """Each single choice that turns a bounce on."""
     return [way for way in physical(module) if len(way) == 1 and module(**way).sends()]
 
 
@@ -48,7 +48,7 @@ def test_nothing_sends_more_than_there_is(lab, furnace, name):
 
 
 @pytest.mark.parametrize("name", BOUNCING)
-def test_with_more_samples_neither(lab, furnace, name):
+def test_more_samples_send_no_more(lab, furnace, name):
     for way in bounces(MODULES[name]):
         for samples in ({"directions": 16, "steps": 8}, {"directions": 64, "steps": 16, "filter": "none"}):
             light = lab.render(furnace, name, **radius_of(name), **samples, **way)
@@ -56,8 +56,8 @@ def test_with_more_samples_neither(lab, furnace, name):
 
 
 @pytest.mark.parametrize("name", BOUNCING)
-def test_a_bounce_brings_back_most_of_what_is_blocked(lab, furnace, name):
-    """Of the light that is missing in dark corners, more than half."""
+def test_a_bounce_replaces_most_of_the_blocked_light(lab, furnace, name):
+    """More than half of the light that is missing in dark corners."""
     for way in bounces(MODULES[name]):
         frame = lab.render(furnace, name, size=(128, 96), directions=16, steps=8, **radius_of(name), **way)
         dark = frame.mask & (frame["ambient"][..., 0] < 0.8)
@@ -66,8 +66,8 @@ def test_a_bounce_brings_back_most_of_what_is_blocked(lab, furnace, name):
 
 
 @pytest.mark.parametrize("strength", [0.3, 1.0, 10.0])
-def test_what_lets_light_through_reflects_the_rest(lab, furnace, strength):
-    """S3HO's fading occluders: 1 - 1/(1 + λ d) passes, and 1/(1 + λ d) of the direction is the sender's."""
+def test_an_occluder_that_lets_light_through_reflects_the_rest(lab, furnace, strength):
+    """S3HO's strength: 1 - 1/(1 + λ d) of the light passes, and 1/(1 + λ d) of the direction is the sender's."""
     settings: dict = {"radius": 1.0, "directions": 16, "steps": 8, "size": (128, 96), "filter": "none"}
     frame = lab.render(furnace, "s3ho", indirect=True, strength=strength, **settings)
     assert frame["radiance"][frame.mask].max() <= 1 + HALF
@@ -77,7 +77,7 @@ def test_what_lets_light_through_reflects_the_rest(lab, furnace, strength):
 
 @pytest.mark.parametrize("way", [{"name": "ssdo", "bounces": 1}, {"name": "s3ho", "indirect": True}])
 def test_patches_make_energy(lab, furnace, way):
-    """As the pages of both modules state: more than 1, and the more directions the more."""
+    """More than 1, and more with more directions, as the pages of both modules state."""
     name, bounce = way["name"], {key: value for key, value in way.items() if key != "name"}
     largest = []
     for directions, steps in ((8, 4), (16, 8)):

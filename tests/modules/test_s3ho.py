@@ -42,7 +42,7 @@ def bounces(frame: aolab.Frame) -> np.ndarray:
 
 
 def off_the_crease(frame: aolab.Frame, scene: Scene) -> np.ndarray:
-    """(H, W) bool: floor before the wall at x = 0, where a texel is not of both."""
+    """(H, W) bool: the floor before the wall at x = 0, without texels that contain both."""
     with np.errstate(invalid="ignore"):
         across = small_scenes.world_positions(frame, scene.camera)[..., 0]
         return (frame.world_normal()[..., 1] > 0.9) & (across > 0.15)
@@ -85,7 +85,7 @@ def test_moments_give_what_the_plain_form_gives(lab, boxes, settings):
 
 @pytest.mark.slow
 def test_converged_coefficients_are_the_references(lab):
-    """Within 3 % of c_0 on `boxes`, where four peeled layers hold all that there is."""
+    """Within 3 % of c_0 on `boxes`, whose surfaces all lie in four peeled layers."""
     module = S3HO(directions=16, steps=16, filter="none", occluders="layers")
     names = ("sh0", "sh1", "sh2", "sh3")
     truth = aolab.reference("boxes", size=(160, 90), like=module, rays=256, buffers=names, cache=False)
@@ -96,7 +96,7 @@ def test_converged_coefficients_are_the_references(lab):
 
 
 def test_coefficients_turn_with_the_camera(lab, wall):
-    """World space: what one spot has does not depend on where it is seen from."""
+    """In world space, the coefficients of a spot do not depend on the camera."""
     spot = np.array([0.3, 0.0, 0.2])
     found = []
     for eye in ((4.0, 3.0, 3.0), (3.0, 4.0, -2.0)):
@@ -121,7 +121,7 @@ def test_the_plain_sum_has_the_same_mean_and_more_noise(lab, boxes):
 
 
 def test_bands_are_no_longer_than_those_of_a_function_that_is_nowhere_negative(lab, wall):
-    """|c_l| ≤ √(2l + 1) |c_0|, and shader and Python agree on it: before a wall, three directions exceed it."""
+    """|c_l| ≤ √(2l + 1) |c_0| in shader and Python; before a wall, the sums over three directions exceed it."""
     frame = lab.render(under(wall, SUN), "s3ho", radius=2.0, directions=3, filter="none", size=SHARP)
     found = coefficients(frame)[frame.mask]
     assert found[:, 0].min() >= 0
@@ -137,7 +137,7 @@ def test_bands_are_no_longer_than_those_of_a_function_that_is_nowhere_negative(l
 
 
 def test_deep_trenches_converge_with_sets_of_few_directions(lab):
-    """At a visibility of 0.1, 64 sets of four directions give what four sets of 64 give."""
+    """At a visibility of 0.1, 64 sets of four directions and four sets of 64 have the same mean."""
     sides = [small_scenes.box((low, 0, -5), (low + 4.9, 1, 5)) for low in (-5, 0.1)]
     trench = small_scenes.of(small_scenes.floor(9), *sides, camera=aolab.Camera((0, 2.5, 2.5), (0, 0, 0), fov=15))
     few, many = (
@@ -152,8 +152,8 @@ def test_deep_trenches_converge_with_sets_of_few_directions(lab):
 
 
 @pytest.mark.slow
-def test_strength_lets_light_through_what_blocks(lab, wall):
-    """Before a wall, the formula over all directions: one with d_x < 0 is blocked at x / -d_x."""
+def test_strength_lets_light_through_occluders(lab, wall):
+    """Before a wall, which blocks directions with d_x < 0 at the distance x / -d_x: against the formula."""
     radius, strength = 2.0, 3.0
     module = S3HO(radius=radius, directions=32, steps=32, falloff=0.5, filter="none", thickness=10.0)
     hard, soft = (
@@ -171,8 +171,8 @@ def test_strength_lets_light_through_what_blocks(lab, wall):
         assert 1 - soft[there].mean() == pytest.approx((reached / (1 + strength * d)).mean(), abs=0.03)
 
 
-def test_what_is_closed_is_black(lab, wall):
-    """Of one direction the sum of what is blocked is far from the clamped cosine: no light comes of that."""
+def test_closed_points_are_black(lab, wall):
+    """The sum over a single blocked direction is far from the clamped cosine; the difference makes no light."""
     frame = lab.render(under(wall, SUN, LAMP), "s3ho", radius=2.0, directions=1, filter="none", size=SHARP)
     closed = frame["visibility"] < 2e-3  # of half floats
     assert closed.sum() > 100
@@ -186,7 +186,7 @@ def test_what_is_closed_is_black(lab, wall):
 
 
 def test_a_constant_sky_gives_visibility_without_truncation(lab, boxes):
-    """E = L ∫ V cosθ dω: y_0 is constant, and no band above it takes part."""
+    """E = L ∫ V cosθ dω: y_0 is constant, and no higher band contributes."""
     frame = lab.render(under(boxes, Environment.constant((0.5, 1.0, 2.0))), "s3ho", radius=1.0)
     expected = frame["albedo"] * np.nan_to_num(frame["visibility"])[..., None] * (0.5, 1.0, 2.0)
     np.testing.assert_allclose(frame["ambient"], expected, atol=4e-3)
@@ -234,7 +234,7 @@ def test_lights_add_up(lab, boxes):
 
 
 def test_occlusion_shades_a_light_on_its_side(lab, wall):
-    """The wall stands at x = 0: it takes away the light from its side, and hardly that from the other."""
+    """The wall at x = 0 blocks the light from its side, and little of the light from the other side."""
     shares = []
     for side in (-1.0, 1.0):
         lamp = DirectionalLight((-side, -0.5, 0.0), shadow=False)
@@ -262,7 +262,7 @@ def test_a_light_with_a_shadow_map_is_dark_in_it_and_on_what_faces_away(lab, box
 
 
 def test_a_shadow_sets_in_where_light_grazes(lab):
-    """A lobe still has a fifth of its light at 90°; the shadow map of a ball is rough there, and would show through."""
+    """At 90° a lobe has a fifth of its light, and the shadow map of a ball is rough; the roughness must not appear."""
     ball = small_scenes.of(small_scenes.sphere(1.0, (0, 0, 0)), camera=aolab.Camera((0, 0, 4), (0, 0, 0)))
     found = {}
     for shadow in (True, False):
@@ -295,7 +295,7 @@ def test_new_light_runs_the_lighting_alone(boxes):
 # --- one bounce
 
 
-def test_senders_know_no_light(lab, boxes):
+def test_senders_do_not_depend_on_the_light(lab, boxes):
     dark, bright = (
         lab.render(under(boxes, *light), "s3ho", indirect=True, radius=1.0)
         for light in ((Environment.constant(0),), (SUN, LAMP))
@@ -307,7 +307,7 @@ def test_senders_know_no_light(lab, boxes):
 
 
 def test_a_sender_reflects_as_its_cosine_lobe(lab):
-    """Before a wall of one normal and colour the coefficients are that lobe's, times the albedo and one factor."""
+    """Before a wall of one normal and colour, the coefficients are those of its lobe, times albedo and a factor."""
     green = aolab.Material((0.5, 0.9, 0.7))
     scene = small_scenes.of(
         small_scenes.quad((0, 0, 100), (100, 0, 0), (0, 0, -200)),
@@ -324,8 +324,8 @@ def test_a_sender_reflects_as_its_cosine_lobe(lab):
     assert found[..., 0].max() > 0.1
 
 
-def test_one_bounce_under_a_constant_sky_is_what_is_blocked_times_the_senders_albedo(lab, wall):
-    """By rays every sender is seen whole: E = π L ρ (1 - visibility), but for those that face away."""
+def test_one_bounce_under_a_constant_sky_is_the_blocked_share_times_the_senders_albedo(lab, wall):
+    """With rays, E = π L ρ (1 - visibility) where all senders face the receiver."""
     frame = lab.render(wall, "s3ho", size=SHARP, indirect=True, radius=1.0, senders="rays", steps=8)
     floor = off_the_crease(frame, wall)
     expected = 1 - frame["visibility"][floor]
@@ -333,8 +333,8 @@ def test_one_bounce_under_a_constant_sky_is_what_is_blocked_times_the_senders_al
     np.testing.assert_allclose(frame["indirect"][floor][:, 0], expected, atol=0.02)
 
 
-def test_eleven_buffers_accumulate(lab, boxes):
-    """More than a framebuffer takes: twice, for what is not cleared shows when textures are used again."""
+def test_twelve_buffers_accumulate(lab, boxes):
+    """That is more than a framebuffer takes. Rendered twice: textures that are not cleared show when used again."""
     once = [lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, seed=seed) for seed in (0, 1)]
     for _ in range(2):
         both = lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, accumulate=2)
@@ -343,11 +343,12 @@ def test_eleven_buffers_accumulate(lab, boxes):
             np.testing.assert_allclose(both[f"{name}_raw"], mean, atol=2e-3)
 
 
-def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall):
-    """Patches too, and with SSDO's occlusion of the senders switched off: under lights alone there is none."""
+@pytest.mark.parametrize("senders", ["rays", "patches"])
+def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall, senders):
+    """Under lamps alone: only SSDO's senders have occlusion, which dims the sky."""
     lamp = DirectionalLight((-1.0, -0.8, 0.3), (3.0, 2.0, 0.5), shadow=False)
     scene = under(wall, Environment.constant(0), lamp)
-    settings: dict = {"radius": 1.0, "filter": "none", "steps": 8}
+    settings: dict = {"radius": 1.0, "filter": "none", "steps": 8, "senders": senders}
     ours = lab.render(scene, "s3ho", indirect=True, light_window=64.0, **settings)["indirect"]
     theirs = lab.render(scene, "ssdo", bounces=1, **settings)["indirect"]
     # a lobe is not a clamped cosine: of this light it has 1.04 on the wall, and 0.98 on the floor
@@ -358,7 +359,7 @@ def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall):
 
 
 def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
-    """A roof over floor and wall, in the sun: what lies under it gets none, directly or by a bounce."""
+    """A roof over floor and wall, in the sun: under the roof there is no light, neither direct nor by a bounce."""
     roof = small_scenes.box((-5, 4.0, -50), (50, 4.2, 50))
     sun = DirectionalLight((0.0, -1.0, 0.0), (3.0, 3.0, 3.0))
     covered = small_scenes.of(*(one.mesh for one in wall.instances), roof, camera=wall.camera)
@@ -369,8 +370,8 @@ def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
 
 
 @pytest.mark.parametrize("direction", [(1.0, -1.0, 0.0), (0.0, -1.0, 0.0)], ids=["slanting", "from above"])
-def test_light_comes_back_to_what_faces_away_from_the_lamp(lab, direction):
-    """The underside of a shelf over a sunlit floor, on which the shelf's shadow lies: as SSDO and rays have it."""
+def test_surfaces_that_face_away_from_a_lamp_receive_its_bounce(lab, direction):
+    """The underside of a shelf over a sunlit floor with the shelf's shadow, against SSDO and rays."""
     sun = DirectionalLight(direction, (np.pi, np.pi, np.pi))
     grey = aolab.Material((0.8, 0.8, 0.8))
     board = small_scenes.box((-0.6, 0.5, -1.5), (0.6, 0.6, 1.5), grey)
@@ -389,7 +390,7 @@ def test_light_comes_back_to_what_faces_away_from_the_lamp(lab, direction):
 
 
 def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
-    """Layers behind the first one bounce with their own albedo: seen from where the boxes hide each other."""
+    """Layers behind the first one bounce with their own albedo; the boxes hide each other from the camera."""
     camera = aolab.Camera(eye=(-5.0, 1.2, 0.6), target=(0, 0.5, 0), fov=35)
     settings = {"indirect": True, "radius": 1.0, "steps": 8, "camera": camera, "filter": "none"}
 
@@ -404,7 +405,7 @@ def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
     assert np.abs(whole - first).max() > 0.05
 
 
-def test_what_cannot_be_is_refused():
+def test_values_out_of_range_are_refused():
     with pytest.raises(ParameterError, match=r"s3ho: strength = -1 is not valid: float, ≥ 0, ≤ 100, in 1 / radii"):
         S3HO(strength=-1)
     with pytest.raises(ParameterError, match=r"s3ho: light_window = 1 is not valid"):

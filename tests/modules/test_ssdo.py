@@ -64,7 +64,7 @@ def test_under_a_constant_sky_it_is_ssao_with_the_same_samples(lab, boxes, setti
 
 @pytest.mark.slow
 def test_the_shadow_of_a_wall_has_the_colour_of_the_open_side(lab, wall):
-    """Red light from the open side, blue from behind the wall: beside it the floor is red, where SSAO's is grey."""
+    """Red light from the open side, blue from behind the wall: the floor beside the wall is red; SSAO's is grey."""
     scene = replace(wall, environment=two_colours())
     settings = {"radius": 1.0, "thickness": 10.0, "bias": 0.0, "filter": "none"}
     # 64 directions of 64: the environment is blurred to a tenth of a steradian, and the horizon is sharp enough
@@ -169,8 +169,8 @@ def test_the_blocked_estimate_is_the_open_surfaces_light_times_the_open_share(la
 
 
 @pytest.mark.parametrize("settings", [{}, {"environment_lod": 0.0}, {"directions": 1, "filter": "none"}])
-def test_what_is_closed_is_black_and_nothing_is_negative(shaders, boxes, settings):
-    """With an occluder that blocks everything left of the middle of the picture, and nothing right of it."""
+def test_closed_points_are_black_and_no_light_is_negative(shaders, boxes, settings):
+    """The occluders block every point left of the middle of the picture, and no point right of it."""
     blocking = (
         SENDER.replace("OFFSET", "0.0").replace("NORMAL", "1.0").replace("return true", "return samplePos.x < 0.0")
     )
@@ -239,7 +239,7 @@ def bounce_of(shaders, offset: str, normal: str, **settings) -> np.ndarray:
         ("0, 0, 0", "0, 0, -1", 0),  # at the point itself: a direction of no length
     ],
 )
-def test_a_patch_sends_what_its_form_factor_says(shaders, offset, normal, form_factor):
+def test_a_patch_sends_its_radiance_times_its_form_factor(shaders, offset, normal, form_factor):
     """E = L · A cosθ_s cosθ_r / d² · bleeding / (2 cosθ_i), A = π r² / N, summed over N such patches.
 
     1/(2 cosθ_i) is the density of uniform directions, which the patches are meant for, over that of direction i.
@@ -256,8 +256,8 @@ def test_a_patch_sends_what_its_form_factor_says(shaders, offset, normal, form_f
     [("0, 1, 2", "0, 0, -1", 1), ("0, 0, 2", "0, 0, 1", 0)],
     ids=["facing", "from behind"],
 )
-def test_a_ray_brings_all_of_what_it_meets(shaders, offset, normal, share):
-    """E = π L, if every direction meets it; however far away it is."""
+def test_an_occluder_fills_the_share_of_its_direction(shaders, offset, normal, share):
+    """E = π L if every direction meets the same sender, at any distance."""
     found = bounce_of(shaders, offset, normal, senders="rays")
     np.testing.assert_allclose(found, np.array((2.0, 1.0, 0.5)) * np.pi * share, rtol=2e-3)
 
@@ -265,7 +265,8 @@ def test_a_ray_brings_all_of_what_it_meets(shaders, offset, normal, share):
 def patches_beside_a_wall(position: np.ndarray, eye: np.ndarray, clamp: float) -> float:
     """The irradiance at `position`, facing up, from the paper's patches of radiance 1 on the wall x = 0.
 
-    They are where `eye` sees points of uniform directions and uniform lengths in [0, 1], the radius; 100,000 of them.
+    The mean over 100,000 points of uniform directions and uniform lengths in [0, 1], the radius. A patch lies where the
+    ray from `eye` to such a point meets the wall.
     """
     random = np.random.default_rng(0)
     up, length = random.random((2, 100_000))
@@ -280,7 +281,7 @@ def patches_beside_a_wall(position: np.ndarray, eye: np.ndarray, clamp: float) -
 
 
 def test_patches_sum_to_the_papers_integral_over_uniform_directions(lab):
-    """The floor beside an endless wall, one step a direction: an integral that knows no cosine density."""
+    """The floor beside an endless wall, one step a direction; the integral has no cosine density."""
     camera = Camera((4, 3, 0), (0.3, 0.3, 0), fov=34)
     sun = DirectionalLight((-1, 0, 0), (np.pi,) * 3, shadow=False)
     scene = wall_scene(camera=camera).replace(environment=DARK, lights=(sun,))
@@ -299,7 +300,7 @@ def test_patches_sum_to_the_papers_integral_over_uniform_directions(lab):
 
 
 def red_wall(camera: Camera, lights: tuple = ()) -> aolab.Scene:
-    """A white floor right of a red wall in the plane x = 0, in the dark but for a sun that shines on both."""
+    """A white floor right of a red wall in the plane x = 0; a sun shines on both, and there is no other light."""
     sun = DirectionalLight((-1, -1, 0), (3.0, 3.0, 3.0), shadow=False)
     ground = quad((0, 0, 10), (10, 0, 0), (0, 0, -20), name="floor")
     upright = quad((0, 0, 10), (0, 0, -20), (0, 4, 0), RED, "wall")
@@ -327,7 +328,7 @@ def test_the_bounce_has_the_senders_colour_and_ends_with_the_radius(lab, senders
 
 
 def test_senders_that_show_only_their_backs_give_nothing(lab):
-    """Straight down on a box: what the floor beside it meets is the top, which faces away."""
+    """The camera looks straight down on a box: the occluder of the floor beside it is the top, which faces away."""
     sun = DirectionalLight((0, -1, 0), (3.0, 3.0, 3.0))
     scene = of(floor(9), box((-1, 0, -1), (1, 0.8, 1), RED), camera=DOWN, lights=(sun,), sky=DARK)
     for senders in ("patches", "rays"):
@@ -375,7 +376,7 @@ def test_converged_rays_are_the_references_bounce(lab):
 
 
 def test_hidden_senders_make_the_bounce_of_the_sky_better(lab):
-    """Under a sky, the bounce with peeled layers has less error than with one layer: hidden senders have occlusion."""
+    """Under a sky, peeled layers reduce the error of the bounce, because hidden senders have occlusion too."""
     scene = replace(aolab.load("boxes"), lights=(), environment=Environment.sky())
     settings = {"radius": 1.0, "bounces": 1, "directions": 16, "steps": 16, "filter": "none", "size": (160, 90)}
     like = aolab.SSDO(radius=1.0)
@@ -400,8 +401,8 @@ class HiddenLight(aolab.SSDO):
 
 
 @pytest.mark.filterwarnings(OPEN_MESHES)
-def test_the_sky_reaches_hidden_senders_past_what_blocks_it(lab):
-    """The back of a wall, white under a white sky: it is in the open, or a gap of 0.1 away from another wall."""
+def test_occluders_of_hidden_senders_block_the_sky(lab):
+    """The back of a white wall under a white sky, in the open, and with a gap of 0.1 to another wall."""
     camera = Camera((0, 0.5, 3), (0, 0.5, 0), fov=20)
     front, behind = box((-2, 0, -0.2), (2, 1, 0)), box((-2, 0, -0.5), (2, 1, -0.3))
     found = {}
@@ -412,6 +413,29 @@ def test_the_sky_reaches_hidden_senders_past_what_blocks_it(lab):
         found[name] = middle.mean()
     assert found["alone"] > 0.95
     assert found["gap"] < 0.4
+
+
+class Tinted(HiddenLight):
+    """Its estimate reads a texture that a pass makes before the samples."""
+
+    def estimate(self) -> Estimate:
+        plain = super().estimate()
+        text = (aolab.paths.glsl() / "ssdo.frag").read_text()
+        text = text.replace("out vec4 open_light;", "out vec4 open_light;\nuniform sampler2D tint;", 1)
+        text = text.replace("open_light = min(", "open_light = texture(tint, vec2(0.5)) * min(", 1)
+        once = Pass("tint", "out vec4 tint;\nvoid main() { tint = vec4(0.5, 0.5, 0.5, 1.0); }", {"tint": "RGBA16F"})
+        return Estimate([Pass("tinted", text, self.outputs)], plain.outputs, once=[once])
+
+
+@pytest.mark.filterwarnings(OPEN_MESHES)
+def test_the_estimate_on_hidden_surfaces_reads_passes_before_the_samples(lab):
+    scene = of(box((-2, 0, -0.2), (2, 1, 0)), camera=Camera((0, 0.5, 3), (0, 0.5, 0), fov=20))
+    white, tinted = (
+        lab.render(scene, kind(radius=1.0, bounces=1, occluders="layers", filter="none"))
+        for kind in (HiddenLight, Tinted)
+    )
+    assert white["bounce"][24, 32, 0] > 0.9
+    np.testing.assert_allclose(tinted["bounce"][24, 32], 0.5 * white["bounce"][24, 32], rtol=HALF)
 
 
 def test_a_bounce_at_half_resolution(lab, boxes):
@@ -445,7 +469,7 @@ def block_scene(*lights, more=()) -> aolab.Scene:
 
 
 def shadow_error(frame: aolab.Frame, scene: aolab.Scene, towards: np.ndarray, reach: np.ndarray) -> float:
-    """The share of the floor's pixels that are lit and should not be, or the other way round."""
+    """The share of the floor's pixels that are wrongly lit or wrongly dark."""
     position = world_positions(frame, scene.camera)
     ground = (
         frame.mask & (np.abs(position[..., 1]) < 1e-3) & np.isfinite(np.broadcast_to(towards, position.shape)[..., 0])
@@ -458,8 +482,8 @@ def shadow_error(frame: aolab.Frame, scene: aolab.Scene, towards: np.ndarray, re
 
 
 @pytest.mark.filterwarnings(OPEN_MESHES)
-def test_a_shadow_on_the_screen_falls_where_geometry_says(lab):
-    """A light without a shadow map: its shadow is all that the samples towards it find, and as long as the radius."""
+def test_a_shadow_on_the_screen_is_that_of_the_geometry(lab):
+    """The light has no shadow map: the samples towards it find its shadow, which is as long as the radius."""
     scene = block_scene(SUN)
     towards = -np.array(SUN.direction) / np.linalg.norm(SUN.direction)
     for radius in (0.4, 2.0):
@@ -472,7 +496,7 @@ def test_a_shadow_on_the_screen_falls_where_geometry_says(lab):
 
 @pytest.mark.filterwarnings(OPEN_MESHES)
 def test_a_point_lights_samples_end_at_the_light(lab):
-    """Beyond the light stands a wall, within the radius: it throws no shadow."""
+    """A wall beyond the light, within the radius, throws no shadow."""
     lamp = PointLight((-1.1, 0.9, 0.1), (2.0, 2.0, 2.0), shadow=False)
     scene = block_scene(lamp, more=(box((-1.6, 0, -2), (-1.4, 2, 2)),))
     settings = {"radius": 2.0, "light_steps": 64, "occluders": "layers", "bias": 0.0, "size": (256, 192)}
@@ -539,7 +563,7 @@ def test_without_samples_towards_them_lights_are_as_without_the_module(lab):
 
 @pytest.mark.slow
 def test_converged_it_is_ray_traced_directional_occlusion(lab):
-    """Within 3 % of rays on `boxes` (at 480×270: 0.011 and 0.012), where one layer is not."""
+    """Within 3 % of rays on `boxes` (at 480×270: 0.011 and 0.012); one layer errs by more."""
     scene, size = aolab.load("boxes"), (160, 90)
     truth = aolab.reference(scene, size=size, like="ssdo", rays=128, buffers=("visibility", "ambient"), cache=False)
     settings = {"directions": 16, "steps": 16, "accumulate": 4, "filter": "none", "size": size}
@@ -556,7 +580,7 @@ def test_converged_it_is_ray_traced_directional_occlusion(lab):
 
 
 def test_noise_stays_still_while_the_camera_moves(lab, record_property):
-    """One sample set for all frames: what flickers is little, and far less than with a set for each."""
+    """With one sample set for all frames, the flicker is small, and much smaller than with a set for each frame."""
     scene = aolab.load("boxes")
     assert scene.camera is not None
     eyes = [(0.02 * i, 2.7, 6.6) for i in range(5)]
@@ -579,8 +603,8 @@ def test_noise_stays_still_while_the_camera_moves(lab, record_property):
     assert along_the_path("ambient") < 0.001
 
 
-def test_what_stands_still_does_not_change_while_something_moves(lab, boxes):
-    """A box slides; every pixel out of its reach stays as it is."""
+def test_points_out_of_reach_do_not_change_while_a_box_moves(lab, boxes):
+    """A box slides; the value of every pixel out of its reach stays the same."""
     start, end, size = np.array((0.8, 0, 0.0)), np.array((1.0, 0, 0.3)), np.array((1.0, 0.6, 1.0))
     radius = 0.4
     frames = []
