@@ -52,7 +52,7 @@ def test_points_are_seen_by_the_eye_and_lie_on_the_pixels_ray():
 
 
 def test_normals_are_those_of_the_g_buffer_and_never_face_away_from_what_is_met():
-    surface, frame = surface_of("toasters", (240, 135))
+    surface, frame = surface_of("toasters", (480, 270))
     points = surface.points(np.arange(len(surface)))
     drawn = frame.world_normal()[frame.mask]
     agree = (points.normal * drawn).sum(axis=1)

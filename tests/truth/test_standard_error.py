@@ -38,6 +38,19 @@ def test_it_is_the_scatter_over_seeds(frames, name):
     assert np.sqrt((stated**2).mean()) == pytest.approx(scatter, rel=0.1)
 
 
+@pytest.mark.parametrize("name", ["radiance", "bent_normal"])
+def test_what_the_same_rays_bring_varies_together(name):
+    """A ray beside the wall brings either the sky or the wall's light, and no direction but an open one."""
+    sun = aolab.DirectionalLight(direction=(-1, 0, 0), irradiance=(2.0, 2.0, 2.0))
+    room = wall_scene(lights=(sun,), environment=aolab.Environment.constant(1.0))
+    settings = {"size": (24, 18), "rays": 16, "buffers": name, "cache": False}
+    frames = [reference(room, seed=seed, **settings) for seed in range(24)]
+    mask = frames[0].mask
+    values = np.stack([frame[name][mask] for frame in frames]).astype(np.float64)
+    stated = np.stack([frame[standard_error(name)][mask] for frame in frames]).astype(np.float64)
+    assert np.sqrt((stated**2).mean()) == pytest.approx(np.sqrt(values.var(axis=0, ddof=1).mean()), rel=0.06)
+
+
 def test_what_is_exact_has_none(frames):
     assert (frames[0]["direct_standard_error"][frames[0].mask] == 0).all()
     assert frames[0]["direct"].max() > 0
