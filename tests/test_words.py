@@ -22,14 +22,12 @@ SKIPPED = ("_build", "generated")
 BOUND = {
     ".": 3,
     "aolab/gl": 3,
-    "aolab/measures": 15,
     "aolab/modules": 15,
     "aolab/papers": 2,
     "aolab/papers/s3ho": 4,
     "aolab/papers/ssdo": 5,
     "aolab/pipeline": 18,
     "aolab/pipeline/occluders": 4,
-    "aolab/truth": 14,
     "docs": 52,
     "docs/modules": 23,
     "glsl/lib": 1,
@@ -38,12 +36,10 @@ BOUND = {
     "glsl/pipeline": 3,
     "tests": 7,
     "tests/gl": 9,
-    "tests/measures": 11,
     "tests/modules": 18,
     "tests/studies": 1,
     "tests/papers": 5,
     "tests/pipeline": 16,
-    "tests/truth": 5,
     "tools": 2,
 }
 

@@ -22,6 +22,7 @@ def surface_of(name, size):
     return Surface(frame, scene, View(scene.camera, size, scene.bounds), World(scene)), frame
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["colonnade", "skyscrapers"])
 def test_no_pixel_is_black_among_bright_ones(name):
     """A point inside a solid sees nothing at all. Rays from the G-buffer's own positions left 3 and 2 such pixels."""
