@@ -39,9 +39,8 @@ class BufferComparison:
         """The share of the reference's own noise in the RMSE, in words."""
         rest = np.sqrt(max(self.rmse**2 - self.noise**2, 0))
         return (
-            f"buffer '{self.name}': the reference's own standard error, {self.noise:.2g}, is "
-            f"{self.noise / self.rmse:.0%} of the RMSE, {self.rmse:.2g}; without it the RMSE is about {rest:.2g}. "
-            "Give the reference more `rays`, or an `error`"
+            f"the reference's own standard error, {self.noise:.2g}, is {self.noise / self.rmse:.0%} of the RMSE, "
+            f"{self.rmse:.2g}; without it the RMSE is about {rest:.2g}"
         )
 
     @property

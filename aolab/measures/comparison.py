@@ -4,7 +4,7 @@ import json
 import math
 import warnings
 from collections.abc import Iterable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from os import PathLike
 from typing import Any
 
@@ -21,6 +21,10 @@ from .metrics import Measures, angles, differences, psnr
 from .pairing import Buffers, common, errors, label, regions, size_of
 from .perception import flip_map, ssim_map
 from .quantities import kind_of, picture
+
+# the others, percentiles and the mean magnitude, are in `measures` and in the JSON
+PRINTED = ("pixels", "rmse", "trimmed", "outliers", "noise", "bias", "p99", "maximum", "psnr", "ssim", "flip", "angle",
+           "angle_p90")  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +126,8 @@ def compare(
     compared = measured(a, b, buffers, border=border, flip=flip)
     for one in compared.buffers.values():
         if one.is_noisy:
-            warnings.warn(one.about_noise, Notice, stacklevel=2)
+            advice = "give the reference more `rays`, or an `error`"
+            warnings.warn(f"buffer '{one.name}': {one.about_noise}; {advice}", Notice, stacklevel=2)
     return compared
 
 
@@ -211,12 +216,9 @@ def _plain(measures: dict[str, float]) -> dict[str, float | str | None]:
 
 
 def _table(name: str, unit: str, measures: dict[str, Measures]) -> str:
-    """A row for each region, a column for each measure that any region has."""
-    columns = [
-        field.name
-        for field in fields(Measures)
-        if any(not math.isnan(getattr(m, field.name)) for m in measures.values())
-    ]
+    """A row for each region, a column for each of the `PRINTED` measures that any region has."""
+    columns = [name for name in PRINTED if any(not math.isnan(getattr(one, name)) for one in measures.values())]
     head = f"{name}, {unit}" if unit else name
     rows = [[f"  {region}", *(getattr(one, column) for column in columns)] for region, one in measures.items()]
-    return table({head: "", **dict.fromkeys(columns, ".4g")}, rows)
+    formats = {name: "d" if name == "pixels" else ".4g" for name in columns}
+    return table({head: "", **formats}, rows)

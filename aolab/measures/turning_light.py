@@ -79,7 +79,7 @@ def relight(
 ) -> Relighting:
     """Compare `buffer` of `result` and `truth`, functions of the environment, under `k` equal turns of it about +y.
 
-    A `Notice` tells if the truth's own noise is more than a third of the error. Raises `ParameterError` for an
+    A `Notice` is given if the truth's own noise is more than a third of the error. Raises `ParameterError` for an
     environment that is the same all around: turning it changes nothing.
     """
     if not isinstance(k, int) or k < 1:

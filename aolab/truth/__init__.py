@@ -1,4 +1,4 @@
-"""The ray-traced truth: what every method is measured against, pixel by pixel."""
+"""The ray-traced truth, with which every method is compared, pixel by pixel."""
 
 from .reference import reference
 

@@ -22,7 +22,7 @@ from ..scene.scene import Scene
 
 BUDGET = 2_000_000_000  # bytes; the entries used longest ago go first
 PACKAGE = Path(__file__).parents[1]
-DAMAGED = (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile)  # what an unreadable entry raises
+DAMAGED = (OSError, ValueError, EOFError, KeyError, zipfile.BadZipFile)  # the errors of an unreadable entry
 
 
 def folder() -> Path:
@@ -48,7 +48,7 @@ def key(scene: Scene, **settings: object) -> str:
 def code(package: Path) -> str:
     """A digest of all Python files of `package`, any of which a result may depend on.
 
-    The files are read once a process: what runs is what was imported, not what was edited since.
+    The files are read once a process: the code that runs was imported, and later edits do not change it.
     """
     digest = hashlib.sha256()
     for file in sorted(package.rglob("*.py")):

@@ -1,7 +1,7 @@
-"""Rays against triangles: Embree, and a plain caster in NumPy that stands in for tiny scenes and checks it.
+"""Rays against triangles: Embree, and a plain caster in NumPy for tiny scenes, which also checks Embree.
 
-Both have the same two questions, for `origins` and unit `directions` (n, 3) float32 and a `limit` (distance, scene
-units, may be infinite): `occluded` - is anything nearer than that? - and `first_hit`. Triangles count from both sides.
+Both have two functions of `origins` and unit `directions`, (n, 3) float32, and of a `limit` (distance in scene units,
+which may be infinite). `occluded` tests for a nearer surface, `first_hit` returns the nearest. Triangles are two-sided.
 """
 
 from typing import Literal, NamedTuple, Protocol, get_args
@@ -25,7 +25,7 @@ class Hits(NamedTuple):
 
 
 class Caster(Protocol):
-    """What both engines can do."""
+    """The functions of both engines."""
 
     def occluded(self, origins: np.ndarray, directions: np.ndarray, limit: np.ndarray | float) -> np.ndarray:
         """(n,) bool."""
@@ -37,7 +37,7 @@ class Caster(Protocol):
 
 
 class EmbreeCaster:
-    """Embree (Wald et al. 2014) through embreex, one call for many rays; it lets other threads run meanwhile."""
+    """Embree (Wald et al. 2014) through embreex, one call for many rays, during which other threads run."""
 
     def __init__(self, triangles: np.ndarray) -> None:
         """`triangles` (t, 3, 3) float32."""
@@ -61,7 +61,7 @@ class EmbreeCaster:
 class NumpyCaster:
     """Möller and Trumbore 1997 for every ray and every triangle, in float64; only for tiny scenes."""
 
-    PAIRS = 1_000_000  # of ray and triangle at a time: bounds the memory to about 200 MB
+    PAIRS = 1_000_000  # of rays and triangles at a time: bounds the memory to about 200 MB
 
     def __init__(self, triangles: np.ndarray) -> None:
         """`triangles` (t, 3, 3)."""
@@ -120,5 +120,5 @@ def caster(engine: Engine, triangles: np.ndarray) -> Caster:
 
 
 def _limits(limit: np.ndarray | float, origins: np.ndarray) -> np.ndarray:
-    """(n,) float32, a copy: Embree writes the distance found into it."""
+    """(n,) float32, a copy, since Embree writes the distance of the hit into it."""
     return np.array(np.broadcast_to(np.asarray(limit, np.float32), len(origins)))

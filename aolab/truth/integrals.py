@@ -1,4 +1,4 @@
-"""What is integrated over the hemisphere, buffer by buffer: each a mean over cosine-distributed rays."""
+"""The integrals over the hemisphere, buffer by buffer: each is a mean over cosine-distributed rays."""
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass

@@ -25,7 +25,7 @@ from .shot import Shot
 
 BUFFERS = ("direct", "ambient", "indirect", "radiance", "image")
 WORKER = Path(__file__).with_name("mitsuba_worker.py")
-LAST_LINES = 6  # of what a failing Mitsuba wrote
+LAST_LINES = 6  # of the output of a failing Mitsuba
 
 
 def path_traced(
@@ -46,20 +46,20 @@ def path_traced(
 
     - `radiance`: everything, over the environment; paths of at most `max_depth` edges: 2 is direct light (of the
       environment too), 3 adds one bounce, -1 is all of them; `image`: the same, tone mapped as a render, sRGB uint8;
-    - `direct`, `ambient`, `indirect`: what `aolab.reference(radius=None)` calls so: direct light of the lights, direct
+    - `direct`, `ambient`, `indirect`, as of `aolab.reference(radius=None)`: direct light of the lights, direct
       light of the environment, and one bounce of both, whatever `max_depth` is. 0 in the background.
 
-    Besides those there are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
+    Further buffers are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
     pixel (rounded up to a full grid) are taken for each light and for the environment, which are rendered one by one
-    and added up: choosing among them is no noise. Mitsuba is ended after `timeout` seconds. Results are kept on disk,
-    as the reference's are, unless `cache` is False.
+    and added up, so that no noise comes from a choice among them. Mitsuba is ended after `timeout` seconds. Results are
+    kept on disk, as the reference's are, unless `cache` is False.
 
-    What differs from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
+    Differences from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
     not from 9 coefficients; textures have one level; holes of cut-out textures have edges between texels; a surface
-    whose shading normal points away from the viewer is lit from behind. What has no counterpart in Mitsuba is a
+    whose shading normal points away from the viewer is lit from behind. Parts without counterpart in Mitsuba are a
     `SceneError`: a light without shadow, and vertex colours together with a texture.
 
-    Raises `ParameterError`, also where Mitsuba is not installed, and `Error` with its last words where it fails.
+    Raises `ParameterError`, also if Mitsuba is not installed, and `Error` with Mitsuba's last lines if it fails.
     """
     scene = load(scene)
     wanted = _checked(buffers, max_depth, samples, seed, timeout)
@@ -92,7 +92,7 @@ def _checked(buffers: Iterable[str], max_depth: int, samples: int, seed: int, ti
 
 
 def _parts(buffer: str, scene: Scene, max_depth: int) -> list[tuple[int, Image]]:
-    """The images that `buffer` is the sum of, each with its sign. The environment is the emitter after the lights."""
+    """The images whose sum is `buffer`, each with its sign. The environment is the emitter after the lights."""
     assert scene.environment is not None  # Scene fills it in
     lights = range(len(scene.lights))
     sky = [len(scene.lights)] if scene.environment.radiance.any() else []
@@ -136,8 +136,8 @@ def _run(description: Description, timeout: float) -> dict[str, np.ndarray]:
 
 
 def run_worker(folder: Path, timeout: float) -> None:
-    """Let Mitsuba render what lies in `folder`. Raises `Error` with its last words, or after `timeout` seconds."""
-    # -P: this folder's modules (cache, lighting, mitsuba, ...) must not stand in for installed ones
+    """Let Mitsuba render the scene in `folder`. Raises `Error` with its last lines, or after `timeout` seconds."""
+    # -P: this folder's modules (cache, lighting, mitsuba, ...) must not hide installed ones
     command = [sys.executable, "-P", str(WORKER), str(folder)]
     try:
         done = subprocess.run(command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=timeout)
@@ -146,5 +146,5 @@ def run_worker(folder: Path, timeout: float) -> None:
             f"Mitsuba did not finish within {timeout:g} s: fewer samples, a smaller size, or a larger timeout"
         ) from None
     if done.returncode:
-        words = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[-LAST_LINES:]
+        words = (done.stderr.strip() or done.stdout.strip() or "no output").splitlines()[-LAST_LINES:]
         raise Error(f"Mitsuba failed (exit status {done.returncode}): " + "\n".join(words))

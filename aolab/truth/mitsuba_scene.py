@@ -24,7 +24,7 @@ class Image(NamedTuple):
 
     emitter: int
     max_depth: int
-    background: bool  # is the environment seen behind the surfaces?
+    background: bool  # whether the environment shows behind the surfaces
 
     @property
     def name(self) -> str:
@@ -33,16 +33,16 @@ class Image(NamedTuple):
 
 @dataclass
 class Description:
-    """What the worker reads: `arrays` by name, and `scene`, which JSON can hold."""
+    """The worker's input: `arrays` by name, and `scene`, as JSON holds it."""
 
     arrays: dict[str, np.ndarray] = field(default_factory=dict)
     scene: dict[str, Any] = field(default_factory=dict)
 
 
 def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: int) -> Description:
-    """Everything that the worker needs. Emitters are the scene's lights, in order, and then its environment.
+    """The worker's input. Emitters are the scene's lights, in order, and then its environment.
 
-    Raises `SceneError` for what Mitsuba has no counterpart of: a light without shadow, vertex colours × texture.
+    Raises `SceneError` for parts without counterpart in Mitsuba: a light without shadow, vertex colours × texture.
     """
     assert scene.environment is not None  # Scene fills it in
     centre, scale = scene.bounds.mean(axis=0), RADIUS / scene.radius
@@ -59,7 +59,7 @@ def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: 
         "camera": _camera(view, scene.bounds, centre, scale),
         "size": view.size,
         "images": {image.name: image._asdict() for image in images},
-        # holes are surfaces to `path`: they would cast shadows, and count as a bounce
+        # `path` takes holes for surfaces: they would cast shadows, and count as a bounce
         "integrator": "volpath" if cut_out else "path",
         "samples": samples,
         "seed": seed,

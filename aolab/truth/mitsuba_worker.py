@@ -1,7 +1,7 @@
-"""Renders what `mitsuba_scene.describe` described: `python -P mitsuba_worker.py FOLDER`.
+"""Renders the description that `mitsuba_scene.describe` made: `python -P mitsuba_worker.py FOLDER`.
 
-A program of its own, so that whatever Mitsuba does to its process is done to this one. Reads scene.json and arrays.npz,
-where lengths are already Mitsuba's; writes images.npz: (H, W, 3) float32 by name, linear, top row first.
+A program of its own, so that a crash of Mitsuba ends this process alone. It reads scene.json and arrays.npz,
+where lengths are already Mitsuba's, and writes images.npz: (H, W, 3) float32 by name, linear, top row first.
 """
 
 import json
@@ -45,7 +45,7 @@ def _sensor(camera: dict[str, Any], width: int, height: int) -> Any:
         "height": height,
         "pixel_format": "rgb",
         "component_format": "float32",
-        "rfilter": {"type": "box"},  # a pixel is the mean over its own area, nothing of its neighbours
+        "rfilter": {"type": "box"},  # a pixel is the mean over its own area alone
     }
     placed = {"to_world": mi.ScalarTransform4f().look_at(**pose), "fov_axis": "y"}
     # measured on `boxes` at 256 samples: a fifth of the noise of independent samples, in 1.8 times the time

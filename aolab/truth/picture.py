@@ -18,7 +18,7 @@ def spread(values: np.ndarray, pixel: np.ndarray, view: View, background: float)
 
 
 def over_environment(radiance: np.ndarray, mask: np.ndarray, environment: Environment, view: View) -> np.ndarray:
-    """(H, W, 3) `radiance`, and the environment where `mask` is False."""
+    """(H, W, 3): `radiance`, with the environment where `mask` is False."""
     behind = pixel_rays(view, np.flatnonzero(~mask)) @ view.camera.view_from_world[:3, :3]
     result = radiance.copy()
     result[~mask] = environment_radiance(environment, behind)

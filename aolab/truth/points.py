@@ -105,7 +105,7 @@ class Surface:
         off_plane = np.abs(((shown - corner) * normal).sum(axis=1))
         same = (hits.triangle >= 0) & (off_plane <= pixel_width / SAME_PLANE + self._rounding)
         met = first + directions * np.where(hits.triangle >= 0, hits.distance, 0).astype(np.float64)[:, None]
-        height = ((met - corner) * normal).sum(axis=1)  # what single precision left
+        height = ((met - corner) * normal).sum(axis=1)  # the error of single precision
         return met + normal * (self._world.lift - height)[:, None], normal, same
 
     def _shown(self, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

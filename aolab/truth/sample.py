@@ -1,4 +1,4 @@
-"""One ray a point, and what it met: all that the integrands look at."""
+"""One ray a point and its hit: the input of the integrands."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ def randoms(*seed: int) -> Randoms:
 
 @dataclass(frozen=True)
 class Setting:
-    """The problem apart from the surface: what stands where, what shines, what is asked, and `rays` a point."""
+    """The problem apart from the surface: the world, the sky, the lights, the question, and `rays` a point."""
 
     world: World
     sky: Sky
@@ -63,7 +63,7 @@ class Setting:
 
 @dataclass
 class Sample:
-    """One ray a point. `hits` is None where no integrand looks at it; `limit` is how far the rays went."""
+    """One ray a point. `hits` is None if no integrand reads it."""
 
     setting: Setting
     points: Points
@@ -84,12 +84,12 @@ class Sample:
 
     @cached_property
     def hit_albedo(self) -> np.ndarray:
-        """(blocked, 3): the albedo of what was hit."""
+        """(blocked, 3): the albedo of the surfaces that were hit."""
         return self.setting.world.albedo(*(part[self.blocked] for part in self.first[1:]))
 
     @cached_property
     def hit_surface(self) -> tuple[np.ndarray, np.ndarray]:
-        """Positions and normals (blocked, 3) of what was hit, on the side that was hit."""
+        """Positions and normals (blocked, 3) of the hits, on the side that was hit."""
         b = self.blocked
         return self.setting.world.hit_surface(
             self.points.position[b], self.directions[b], self.first.distance[b], self.first.triangle[b]

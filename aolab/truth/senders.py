@@ -1,4 +1,4 @@
-"""The light that leaves what blocks: of the lamps and of the environment, once."""
+"""The light that blocking surfaces send: the light of the lamps and of the environment, reflected once."""
 
 import numpy as np
 
@@ -9,7 +9,7 @@ from .sample import Sample
 
 
 def sent(sample: Sample) -> np.ndarray:
-    """(n, 3): the radiance that what blocks sends along each ray, times how far it blocks; 0 along open rays."""
+    """(n, 3): the radiance that a blocking surface sends along each ray, times its blocked share; 0 along open rays."""
     setting, b = sample.setting, sample.blocked
     positions, normals = sample.hit_surface
     rising = (sample.directions[b] * sample.points.normal[b]).sum(axis=1)
@@ -26,7 +26,7 @@ def sent(sample: Sample) -> np.ndarray:
 def skylight(sample: Sample, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:
     """(m, 3): the environment's irradiance / π at `positions` (m, 3), by one ray each, and one towards its bright part.
 
-    The rays look as far as the receiver's do if the question says `limited_senders`, else without end.
+    Under `limited_senders` the rays are as long as the receiver's; else their length is unlimited.
     """
     setting, random = sample.setting, sample.randoms["skylight"]
     sky = setting.sky

@@ -1,4 +1,4 @@
-"""What a truth is the truth of: a scene, as aolab's own G-buffer shows it to a camera."""
+"""The subject of a truth: a scene, as aolab's own G-buffer shows it to a camera."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass

@@ -1,4 +1,4 @@
-"""The scene as rays meet it: triangles, what they are made of, and the holes of cut-out textures."""
+"""The scene as rays meet it: triangles, their materials, and the holes of cut-out textures."""
 
 from functools import cached_property
 
@@ -16,7 +16,7 @@ LIFT_ULPS = 16
 
 
 class World:
-    """Triangles of a scene. Coordinates are world space, moved so that `centre` is 0: float32 is finest there."""
+    """Triangles of a scene. Coordinates are world space, moved so that `centre` is 0, where float32 is finest."""
 
     def __init__(self, scene: Scene, engine: Engine = "auto") -> None:
         self.centre = scene.bounds.mean(axis=0)  # (3,) float64, world space
@@ -30,18 +30,17 @@ class World:
         """(t, 3) float32: the triangles' own unit normals, by their winding."""
         corner = self.corners.astype(np.float64)
         normals = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0])
-        # a triangle that is degenerate in world float32 can only be hit from noise; any direction will do
+        # only rounding can hit a triangle that is degenerate in float32; any direction will do
         return (normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)).astype(np.float32)
 
     def occluded(self, origins: np.ndarray, directions: np.ndarray, limit: np.ndarray | float) -> np.ndarray:
-        """(n,) bool: is anything nearer than `limit`?"""
+        """(n,) bool: whether a surface is nearer than `limit`."""
         if not self._surface.has_holes:
             return self._caster.occluded(origins, directions, limit)
         return self.first_hit(origins, directions, limit).triangle >= 0
 
     def first_hit(self, origins: np.ndarray, directions: np.ndarray, limit: np.ndarray | float) -> Hits:
-        """The nearest surface along each ray; a hole in a cut-out texture is none, nor is the back of a surface that
-        has only a front."""  # fmt: skip
+        """The nearest surface along each ray. Holes of cut-out textures and backs of single-sided surfaces are none."""
         hits = self._caster.first_hit(origins, directions, limit)
         if not self._surface.has_holes:
             return hits
@@ -71,7 +70,7 @@ class World:
     def hit_surface(
         self, origins: np.ndarray, directions: np.ndarray, distance: np.ndarray, triangle: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Where rays arrived: positions (n, 3), lifted towards where they came from, and unit normals on that side."""
+        """The ends of rays: positions (n, 3), lifted to the side that the rays came from, and unit normals there."""
         normals = self.normals[triangle]
         normals = normals * np.where((normals * directions).sum(axis=1) > 0, -1, 1).astype(np.float32)[:, None]
         return origins + directions * distance[:, None] + normals * np.float32(self.lift), normals

@@ -129,7 +129,7 @@ def test_harmonics_have_the_noise_of_their_coefficients():
     assert set(found.buffers) == {"sh", *(f"sh_band{i}" for i in range(4))}
 
 
-def test_relighting_tells_noise_once():
+def test_noise_in_relighting_is_one_notice():
     exact, seen = noisy_pair(0.05)
     buffers = {"ambient": np.repeat(seen["visibility"][..., None], 3, axis=2)}
     buffers["ambient_standard_error"] = np.full_like(buffers["ambient"], 0.05)

@@ -1,4 +1,4 @@
-"""`compare`: what is compared, where, and what it says."""
+"""`compare`: the compared buffers, their regions, and the messages."""
 
 import json
 import math
@@ -199,7 +199,7 @@ def test_a_frame_shows_itself_in_notebooks(noise):
         ([1], {"visibility": np.ones((4, 5))}, None, "cannot compare a list"),
     ],
 )
-def test_what_cannot_be_compared(a, b, buffers, match):
+def test_results_that_cannot_be_compared(a, b, buffers, match):
     with pytest.raises(aolab.ParameterError, match=match):
         compare(a, b, buffers)
 

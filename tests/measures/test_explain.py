@@ -7,7 +7,7 @@ from small_scenes import box, floor, of
 import aolab
 from aolab.measures.explain import with_margin
 
-# the floor is one quad, open on purpose, and peeling says so
+# the floor is one quad, open on purpose, and peeling gives a notice
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*not closed:aolab.errors.Notice")]
 
 SIZE = (72, 48)

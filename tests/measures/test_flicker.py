@@ -23,7 +23,7 @@ def painted(lab, paint, cameras=MOVED) -> list[aolab.Frame]:
     return frames
 
 
-def test_what_is_painted_on_surfaces_does_not_flicker(lab):
+def test_paint_on_surfaces_does_not_flicker(lab):
     """A pattern that is linear in the world is interpolated exactly, wherever the camera goes."""
     found = flicker(painted(lab, lambda i, position: np.nan_to_num(position @ (0.1, 0.2, 0.05), posinf=0, neginf=0)))
     assert found.mean < 1e-3  # perspective is not linear within a pixel

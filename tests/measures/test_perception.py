@@ -74,7 +74,7 @@ def test_a_black_reference_is_compared_too():
 
 
 def test_a_missing_package_is_named_with_the_fix(monkeypatch, noise):
-    """What an import finds as None is not installed."""
+    """A module that is None in `sys.modules` is not installed."""
     monkeypatch.setitem(sys.modules, "flip_evaluator", None)
     found = {"visibility": noise}
     with pytest.raises(aolab.ParameterError, match=r"pip install flip-evaluator, or flip=False"):

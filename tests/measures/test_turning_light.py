@@ -1,4 +1,4 @@
-"""Relighting error: what turns, and what it says."""
+"""Relighting error: the turned light, the numbers, and the messages."""
 
 import json
 import math
@@ -21,7 +21,7 @@ def towards(light: aolab.Environment):
 
 
 def grey(light: aolab.Environment):
-    """What takes no notice of the direction: the mean of the other."""
+    """A result without direction: the mean of the other."""
     values = towards(light)["ambient"]
     return {"ambient": np.broadcast_to(values.mean(axis=(0, 1)), values.shape)}
 
@@ -32,7 +32,7 @@ def test_the_truth_has_no_error():
     assert found.rmse == 0
 
 
-def test_what_ignores_direction_errs_alike_under_every_quarter_turn():
+def test_a_result_without_direction_errs_alike_under_every_quarter_turn():
     found = relight(grey, towards, SUN, k=4)
     errors = [one.rmse for one in found.measures]
     assert errors == pytest.approx([errors[0]] * 4, rel=1e-4)

@@ -1,4 +1,4 @@
-"""What light the open directions bring, and what the blocked ones reflect."""
+"""The light of open directions, and the light that blocked directions reflect."""
 
 import numpy as np
 import pytest

@@ -30,7 +30,7 @@ def coarse_texture(alpha=255):
 
 
 def test_albedo_at_hits_is_what_the_rasteriser_draws():
-    """Base colour, vertex colours, and a texture that tells its corners and directions apart."""
+    """Base colour, vertex colours, and a texture whose corners and directions differ."""
     textured = aolab.Material(base_color=(0.9, 0.8, 0.7), texture=coarse_texture())
     left = quad((-0.8, 0, 0), (0.7, 0, 0), (0, 0.8, 0), material=textured)
     colors = np.random.default_rng(2).random((4, 4))

@@ -129,7 +129,7 @@ def test_the_environment_is_where_we_look_it_up(shape, target):
 
 
 @needs_mitsuba
-def test_what_is_nearer_than_the_near_plane_is_not_seen():
+def test_a_surface_before_the_near_plane_is_not_seen():
     near, far = quad((0, 0, 1), (1, 0, 0), (0, 1, 0), 0.8), quad((0, 0, 0), (1, 0, 0), (0, 1, 0), 0.5)
     sun = aolab.DirectionalLight((3, 0, -1), (1.0, 1.0, 1.0))  # from the side, past the nearer one
     camera = aolab.Camera((0, 0, 3), (0, 0, 0), near=2.5)
@@ -299,7 +299,7 @@ def test_wrong_arguments_are_named(arguments, message):
 
 
 @needs_mitsuba
-def test_what_mitsuba_cannot_render_is_refused():
+def test_a_scene_that_mitsuba_cannot_render_is_refused():
     sun = aolab.DirectionalLight((0, -1, 0), shadow=False)
     with pytest.raises(SceneError, match=r"DirectionalLight without shadow: engine = 'mitsuba' has no such light"):
         path_traced(wall_scene(lights=(sun,)), size=SIZE)

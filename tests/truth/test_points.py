@@ -22,6 +22,7 @@ def surface_of(name, size):
     return Surface(frame, scene, View(scene.camera, size, scene.bounds), World(scene)), frame
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["colonnade", "skyscrapers"])
 def test_no_pixel_is_black_among_bright_ones(name):
     """A point inside a solid sees nothing at all. Rays from the G-buffer's own positions left 3 and 2 such pixels."""
@@ -52,7 +53,7 @@ def test_points_are_seen_by_the_eye_and_lie_on_the_pixels_ray():
 
 
 def test_normals_are_those_of_the_g_buffer_and_never_face_away_from_what_is_met():
-    surface, frame = surface_of("toasters", (240, 135))
+    surface, frame = surface_of("toasters", (480, 270))
     points = surface.points(np.arange(len(surface)))
     drawn = frame.world_normal()[frame.mask]
     agree = (points.normal * drawn).sum(axis=1)
