@@ -247,6 +247,16 @@ class Module(Parameters):
         radius = getattr(self, "radius", None)
         return radius if isinstance(radius, (int, float)) else None
 
+    @property
+    def occlusion_falloff(self) -> float:
+        """The outer share of the radius over which occluders fade out; 0 where the method has no falloff."""
+        return float(getattr(self, "falloff", 0.0))
+
+    @classmethod
+    def has_radius(cls) -> bool:
+        """Whether the method has a radius of occlusion."""
+        return "radius" in cls.model_fields
+
     def passes(self) -> list[Pass]:
         """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
         return [Pass(self.name or type(self).__name__, self.shader, self.outputs)]

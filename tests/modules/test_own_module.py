@@ -41,7 +41,7 @@ void main() {
 """
 
 
-def test_it_computes_what_it_says(lab, boxes):
+def test_it_computes_the_clamped_height(lab, boxes):
     frame = lab.render(boxes, HeightFog(height=2.0, filter="none"))
     y = small_scenes.world_positions(frame, boxes.camera)[..., 1][frame.mask]
     np.testing.assert_allclose(frame["visibility"][frame.mask], np.clip(y / 2, 0, 1), atol=2e-3)

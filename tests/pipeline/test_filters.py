@@ -1,4 +1,4 @@
-"""What the filters must keep, must not mix, and must remove; and the estimate at a lower resolution."""
+"""Filters keep constants, mix no two surfaces and remove noise; and the estimate at a lower resolution."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Peeled layers and further views: what they see that one depth does not, against rays and known geometry."""
+"""Peeled layers and further views, which see more than one depth layer, against rays and known geometry."""
 
 import warnings
 from dataclasses import replace
@@ -382,7 +382,7 @@ def test_more_views_and_finer_ones_come_closer_to_rays(lab):
     assert fine < 0.05
 
 
-def test_what_one_view_sees_in_the_open_is_not_blocked_by_another(lab):
+def test_a_surface_that_a_view_sees_in_the_open_is_not_blocked_by_another_view(lab):
     """The slab before a wall again: no thickness makes a halo, for the views aside look behind it."""
     scene = slab_before_a_wall()
     truth = traced(scene, 1.0)
