@@ -82,6 +82,7 @@ class View:
             "pixel_from_ray": (1 / scale_x, 1 / scale_y, -offset_x / scale_x, -offset_y / scale_y),
             "texel_size": (1 / self.sheet[0], 1 / self.sheet[1]),
             "view_region": tuple(np.divide((*self.origin, *np.add(self.origin, self.size)), self.sheet * 2)),
+            "world_origin": tuple(shader_origin(self.bounds)),
             "view_from_world": matrix_bytes(view_from_world),
             "world_from_view": matrix_bytes(np.linalg.inv(view_from_world)),
             "clip_from_view": matrix_bytes(self.camera.clip_from_view(self.size, self.bounds)),

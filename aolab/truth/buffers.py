@@ -15,11 +15,11 @@ PI = np.float32(np.pi)
 class Buffer:
     """`value` and `variance` return (n, channels) from the moments of `integrals` and from the albedo (n, 3) there.
 
-    `crosses` are the pairs of integrals whose covariance `variance` looks at. The integral `light` is the lights'
-    irradiance at the points; it is exact, and costs no rays over the hemisphere.
+    The channels are those of the table of all buffers, `aolab.modules.buffers`. `crosses` are the pairs of integrals
+    whose covariance `variance` looks at. The integral `light` is the lights' irradiance at the points; it is exact, and
+    costs no rays over the hemisphere.
     """
 
-    channels: int
     integrals: tuple[str, ...]
     value: Callable[[Moments, np.ndarray], np.ndarray]
     variance: Callable[[Moments, np.ndarray], np.ndarray]
@@ -45,12 +45,9 @@ def base_of(name: str) -> str:
     return "visibility" if name == "standard_error" else name.removesuffix("_standard_error")
 
 
-def _linear(
-    channels: int, integral: str, factor: Callable[[np.ndarray], np.ndarray | np.float32], part: slice
-) -> Buffer:
+def _linear(integral: str, factor: Callable[[np.ndarray], np.ndarray | np.float32], part: slice) -> Buffer:
     """A buffer that is a mean times a factor, which may depend on the albedo."""
     return Buffer(
-        channels,
         (integral,),
         lambda moments, albedo: factor(albedo) * moments.mean(integral)[:, part],
         lambda moments, albedo: factor(albedo) ** 2 * moments.variance(integral)[:, part],
@@ -107,18 +104,16 @@ def _radiance_variance(moments: Moments, albedo: np.ndarray) -> np.ndarray:
 
 
 BUFFERS: dict[str, Buffer] = {
-    "visibility": _linear(1, "open", _one, ALL),
-    "ambient": _linear(3, "environment", _albedo, ALL),
-    "indirect": _linear(3, "sender", _albedo, ALL),
+    "visibility": _linear("open", _one, ALL),
+    "ambient": _linear("environment", _albedo, ALL),
+    "indirect": _linear("sender", _albedo, ALL),
     "bent_normal": Buffer(
-        3, ("open", "open_direction"), _bent_normal, _bent_normal_variance, (("open_direction", "open"),)
+        ("open", "open_direction"), _bent_normal, _bent_normal_variance, (("open_direction", "open"),)
     ),
-    **{f"sh{i}": _linear(4, "harmonics", lambda albedo: PI, slice(4 * i, 4 * i + 4)) for i in range(4)},
-    "obscurance": _linear(1, "fuzzy", _one, ALL),
-    "transfer": Buffer(3, ("fuzzy", "closed_albedo"), _transfer, _transfer_variance, (("closed_albedo", "fuzzy"),)),
-    "transfer_multibounce": _linear(3, "path", _one, ALL),
-    "direct": _linear(3, "light", lambda albedo: albedo / PI, ALL),
-    "radiance": Buffer(
-        3, ("light", "environment", "sender"), _radiance, _radiance_variance, (("environment", "sender"),)
-    ),
+    **{f"sh{i}": _linear("harmonics", lambda albedo: PI, slice(4 * i, 4 * i + 4)) for i in range(4)},
+    "obscurance": _linear("fuzzy", _one, ALL),
+    "transfer": Buffer(("fuzzy", "closed_albedo"), _transfer, _transfer_variance, (("closed_albedo", "fuzzy"),)),
+    "transfer_multibounce": _linear("path", _one, ALL),
+    "direct": _linear("light", lambda albedo: albedo / PI, ALL),
+    "radiance": Buffer(("light", "environment", "sender"), _radiance, _radiance_variance, (("environment", "sender"),)),
 }

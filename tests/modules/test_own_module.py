@@ -26,6 +26,7 @@ const bool inverted;
 uniform float height;
 uniform sampler2D viewZ;
 uniform mat4 world_from_view;
+uniform vec3 world_origin;
 uniform vec4 ray_from_pixel;
 out float visibility;
 
@@ -34,7 +35,7 @@ void main() {
     visibility = 1.0;
     if (isBackground(surfaceZ)) return;
     vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
-    visibility = clamp(worldPos.y / height, 0.0, 1.0);
+    visibility = clamp((worldPos.y + world_origin.y) / height, 0.0, 1.0);
     if (bands > 0) visibility = floor(visibility * float(bands)) / float(bands);
     if (inverted) visibility = 1.0 - visibility;
 }

@@ -244,7 +244,7 @@ def test_an_estimate_may_bring_its_filter(lab, plane):
 
 
 class Below(OccluderKind):
-    """All that lies lower than `height` is solid; only in the left half of the picture, with `left_only`."""
+    """All that lies lower than `height` is solid; with `left_only`, in the left half of the picture only."""
 
     name = "below"
     uniforms = ("solid_color",)
@@ -258,7 +258,7 @@ class Below(OccluderKind):
     struct Occluder { vec3 viewPos; };
     bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
         occluder.viewPos = samplePos;
-        bool below = (world_from_view * vec4(samplePos, 1.0)).y < height;
+        bool below = (world_from_view * vec4(samplePos, 1.0)).y + world_origin.y < height;
         return below && !(left_only && receiver.uv.x > 0.5);
     }
     vec3 occluderNormal(Occluder occluder) { return mat3(view_from_world) * vec3(0.0, 1.0, 0.0); }
