@@ -103,7 +103,7 @@ class View:
 class Projection:
     """Any view and projection matrix, (4, 4), at a resolution: a light's map, or a grid seen along an axis.
 
-    The world is that of the shaders, in which the scene's centre is 0 (`View.view_from_shader`).
+    The world is that of the shaders, whose origin is `shader_origin`.
 
     `origin` and `atlas` as of `View`. A shader gets the matrices and `texel_size`; it has no rays of a pinhole.
     """
