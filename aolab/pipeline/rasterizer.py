@@ -78,7 +78,7 @@ class Rasterizer:
         return buffers
 
     def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Buffers:
-        """The outputs of a geometry pass, seen from where it says; `view` is the camera's."""
+        """The outputs of a geometry pass from its viewpoint; `view` is the camera's."""
         seen_from = view if step.seen_from is None else step.seen_from(self.scene, view)
         return self.triangles(step, [seen_from], bindings)
 

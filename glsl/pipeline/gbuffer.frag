@@ -1,4 +1,4 @@
-// The G-buffer: what the camera sees, before any light.
+// The G-buffer: the surfaces that the camera sees, before any light.
 // Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
 //          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w 0)
 //          surfaceAlbedo  linear diffuse albedo; a is 1 where a surface is, and 0 in the background (RGBA16F)

@@ -66,7 +66,7 @@ def test_a_bounce_brings_back_most_of_what_is_blocked(lab, furnace, name):
 
 
 @pytest.mark.parametrize("strength", [0.3, 1.0, 10.0])
-def test_what_lets_light_through_reflects_the_rest(lab, furnace, strength):
+def test_an_occluder_that_lets_light_through_reflects_the_rest(lab, furnace, strength):
     """S3HO's fading occluders: 1 - 1/(1 + λ d) passes, and 1/(1 + λ d) of the direction is the sender's."""
     settings: dict = {"radius": 1.0, "directions": 16, "steps": 8, "size": (128, 96), "filter": "none"}
     frame = lab.render(furnace, "s3ho", indirect=True, strength=strength, **settings)

@@ -96,7 +96,7 @@ def test_converged_coefficients_are_the_references(lab):
 
 
 def test_coefficients_turn_with_the_camera(lab, wall):
-    """World space: what one spot has does not depend on where it is seen from."""
+    """World space: the coefficients of a spot do not depend on the camera."""
     spot = np.array([0.3, 0.0, 0.2])
     found = []
     for eye in ((4.0, 3.0, 3.0), (3.0, 4.0, -2.0)):
@@ -153,7 +153,7 @@ def test_deep_trenches_converge_with_sets_of_few_directions(lab):
 
 @pytest.mark.slow
 def test_strength_lets_light_through_what_blocks(lab, wall):
-    """Before a wall, the formula over all directions: one with d_x < 0 is blocked at x / -d_x."""
+    """Before a wall, the formula over all directions: a direction with d_x < 0 is blocked at x / -d_x."""
     radius, strength = 2.0, 3.0
     module = S3HO(radius=radius, directions=32, steps=32, falloff=0.5, filter="none", thickness=10.0)
     hard, soft = (
@@ -171,7 +171,7 @@ def test_strength_lets_light_through_what_blocks(lab, wall):
         assert 1 - soft[there].mean() == pytest.approx((reached / (1 + strength * d)).mean(), abs=0.03)
 
 
-def test_what_is_closed_is_black(lab, wall):
+def test_a_closed_place_is_black(lab, wall):
     """Of one direction the sum of what is blocked is far from the clamped cosine: no light comes of that."""
     frame = lab.render(under(wall, SUN, LAMP), "s3ho", radius=2.0, directions=1, filter="none", size=SHARP)
     closed = frame["visibility"] < 2e-3  # of half floats
@@ -358,7 +358,7 @@ def test_it_bounces_like_ssdo_where_senders_are_open(lab, wall):
 
 
 def test_a_bounce_of_a_light_ends_where_its_shadow_begins(lab, wall):
-    """A roof over floor and wall, in the sun: what lies under it gets none, directly or by a bounce."""
+    """A roof over floor and wall, in the sun: surfaces under it get none, directly or by a bounce."""
     roof = small_scenes.box((-5, 4.0, -50), (50, 4.2, 50))
     sun = DirectionalLight((0.0, -1.0, 0.0), (3.0, 3.0, 3.0))
     covered = small_scenes.of(*(one.mesh for one in wall.instances), roof, camera=wall.camera)
@@ -404,7 +404,7 @@ def test_hidden_surfaces_send_in_their_own_colour(lab, boxes):
     assert np.abs(whole - first).max() > 0.05
 
 
-def test_what_cannot_be_is_refused():
+def test_values_out_of_range_are_refused():
     with pytest.raises(ParameterError, match=r"s3ho: strength = -1 is not valid: float, ≥ 0, ≤ 100, in 1 / radii"):
         S3HO(strength=-1)
     with pytest.raises(ParameterError, match=r"s3ho: light_window = 1 is not valid"):

@@ -169,7 +169,7 @@ def test_the_blocked_estimate_is_the_open_surfaces_light_times_the_open_share(la
 
 
 @pytest.mark.parametrize("settings", [{}, {"environment_lod": 0.0}, {"directions": 1, "filter": "none"}])
-def test_what_is_closed_is_black_and_nothing_is_negative(shaders, boxes, settings):
+def test_a_closed_place_is_black_and_nothing_is_negative(shaders, boxes, settings):
     """With an occluder that blocks everything left of the middle of the picture, and nothing right of it."""
     blocking = (
         SENDER.replace("OFFSET", "0.0").replace("NORMAL", "1.0").replace("return true", "return samplePos.x < 0.0")
@@ -239,7 +239,7 @@ def bounce_of(shaders, offset: str, normal: str, **settings) -> np.ndarray:
         ("0, 0, 0", "0, 0, -1", 0),  # at the point itself: a direction of no length
     ],
 )
-def test_a_patch_sends_what_its_form_factor_says(shaders, offset, normal, form_factor):
+def test_a_patch_sends_by_its_form_factor(shaders, offset, normal, form_factor):
     """E = L · A cosθ_s cosθ_r / d² · bleeding / (2 cosθ_i), A = π r² / N, summed over N such patches.
 
     1/(2 cosθ_i) is the density of uniform directions, which the patches are meant for, over that of direction i.
@@ -280,7 +280,7 @@ def patches_beside_a_wall(position: np.ndarray, eye: np.ndarray, clamp: float) -
 
 
 def test_patches_sum_to_the_papers_integral_over_uniform_directions(lab):
-    """The floor beside an endless wall, one step a direction: an integral that knows no cosine density."""
+    """The floor beside an endless wall, one step a direction: an integral without a cosine density."""
     camera = Camera((4, 3, 0), (0.3, 0.3, 0), fov=34)
     sun = DirectionalLight((-1, 0, 0), (np.pi,) * 3, shadow=False)
     scene = wall_scene(camera=camera).replace(environment=DARK, lights=(sun,))
@@ -327,7 +327,7 @@ def test_the_bounce_has_the_senders_colour_and_ends_with_the_radius(lab, senders
 
 
 def test_senders_that_show_only_their_backs_give_nothing(lab):
-    """Straight down on a box: what the floor beside it meets is the top, which faces away."""
+    """Straight down on a box: the floor beside it meets the top, which faces away."""
     sun = DirectionalLight((0, -1, 0), (3.0, 3.0, 3.0))
     scene = of(floor(9), box((-1, 0, -1), (1, 0.8, 1), RED), camera=DOWN, lights=(sun,), sky=DARK)
     for senders in ("patches", "rays"):
@@ -458,7 +458,7 @@ def shadow_error(frame: aolab.Frame, scene: aolab.Scene, towards: np.ndarray, re
 
 
 @pytest.mark.filterwarnings(OPEN_MESHES)
-def test_a_shadow_on_the_screen_falls_where_geometry_says(lab):
+def test_a_shadow_on_the_screen_is_the_shadow_of_its_geometry(lab):
     """A light without a shadow map: its shadow is all that the samples towards it find, and as long as the radius."""
     scene = block_scene(SUN)
     towards = -np.array(SUN.direction) / np.linalg.norm(SUN.direction)
@@ -556,7 +556,7 @@ def test_converged_it_is_ray_traced_directional_occlusion(lab):
 
 
 def test_noise_stays_still_while_the_camera_moves(lab, record_property):
-    """One sample set for all frames: what flickers is little, and far less than with a set for each."""
+    """One sample set for all frames: little flickers, and far less than with a set for each frame."""
     scene = aolab.load("boxes")
     assert scene.camera is not None
     eyes = [(0.02 * i, 2.7, 6.6) for i in range(5)]
@@ -579,7 +579,7 @@ def test_noise_stays_still_while_the_camera_moves(lab, record_property):
     assert along_the_path("ambient") < 0.001
 
 
-def test_what_stands_still_does_not_change_while_something_moves(lab, boxes):
+def test_a_still_part_does_not_change_while_another_moves(lab, boxes):
     """A box slides; every pixel out of its reach stays as it is."""
     start, end, size = np.array((0.8, 0, 0.0)), np.array((1.0, 0, 0.3)), np.array((1.0, 0.6, 1.0))
     radius = 0.4
