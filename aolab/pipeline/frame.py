@@ -28,9 +28,9 @@ class Frame:
     """One rendered frame.
 
     `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
-    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` has the settings:
-    renderer, module, parameters, camera, size, seed, ...; `notes` the repairs and omissions. A frame keeps its textures
-    until it is dropped, so that frames may be kept and compared; each costs 80 to 300 bytes a pixel.
+    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` has the
+    settings: renderer, module, parameters, camera, size, seed, ...; `notes` the repairs and omissions. A frame keeps
+    its textures until it is dropped, so that frames may be kept and compared; each costs 80 to 300 bytes a pixel.
     """
 
     textures: Mapping[str, moderngl.Texture | np.ndarray]

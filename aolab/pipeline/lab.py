@@ -124,7 +124,8 @@ class Lab:
 
         Arguments that are not given stay as they are in `frame`, a frame of `render` or `relight`. Modules whose
         estimate does not depend on light (`ssao`, `ssbn`, `s3ho`) keep it; SSDO reads the environment in each
-        direction, so that its estimate is computed again. Raises `ParameterError` for a frame that no lab rendered, and what `render` raises.
+        direction, so that its estimate is computed again.
+        Raises `ParameterError` for a frame that no lab rendered, and the errors of `render`.
         """
         start = perf_counter()
         if not isinstance(frame, Frame) or not isinstance(frame.kept, SurfaceState):
