@@ -11,7 +11,7 @@ from ..gl.texture import Depth, attach
 from ..modules.passes import GeometryPass, Pass
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
-from .geometry import MESH_UNIFORMS, Geometry
+from .geometry import MESH_UNIFORMS, MESH_UNITS, Geometry
 from .pass_runner import Buffers, PassRunner
 from .surfaces import G_BUFFER, g_buffer
 
@@ -106,7 +106,7 @@ class Rasterizer:
         targets = runner.targets(step, size)
         # a depth texture alone is not kept in the pool, which would keep it for good
         framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
-        runner.bind(program, given[0].textures, step.reads, {"base_texture": 0})
+        runner.bind(program, given[0].textures, step.reads, MESH_UNITS)
         with runner.timer.measure(step.name):
             _clear(runner, framebuffer, step, targets, size)
             gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
