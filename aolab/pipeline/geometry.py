@@ -8,6 +8,7 @@ import numpy as np
 
 from ..gl import context
 from ..gl.program import Program
+from ..gl.source import Constant
 from ..gl.texture import refuse_exhaustion
 from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Instance, Scene
@@ -24,6 +25,18 @@ MESH_UNIFORMS: dict[str, object] = {
 }
 # the units of each mesh's textures
 MESH_UNITS = {"base_texture": 0, "emission_texture": 1}
+
+
+def kinds_of(scene: Scene) -> dict[str, Constant]:
+    """Constants: whether some mesh of the scene is single-sided, and whether some has holes or is blended.
+
+    Most scenes have none of them, and their shaders are spared the tests.
+    """
+    materials = [instance.mesh.material for instance in scene.instances]
+    return {
+        "one_sided": any(not material.double_sided for material in materials),
+        "cut_outs": any(material.blend or material.alpha_cutoff is not None for material in materials),
+    }
 
 
 @dataclass

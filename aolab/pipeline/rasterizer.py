@@ -11,7 +11,7 @@ from ..gl.texture import Depth, attach
 from ..modules.passes import GeometryPass, Pass
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
-from .geometry import MESH_UNIFORMS, MESH_UNITS, Geometry
+from .geometry import MESH_UNIFORMS, MESH_UNITS, Geometry, kinds_of
 from .pass_runner import Buffers, PassRunner
 from .surfaces import G_BUFFER, g_buffer
 
@@ -96,7 +96,7 @@ class Rasterizer:
         """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one."""
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
-        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS)
+        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
         own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
         views = [Bindings("the view", uniforms=viewpoint.uniforms) for viewpoint in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
