@@ -3,6 +3,7 @@
 // Inputs: viewNormal, albedo, occlusion0 to occlusion3. Output: ambient, linear RGB radiance: albedo/π × E.
 
 #include "s3ho.transfer.glsl"
+#include "lib/constants.glsl"
 
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
@@ -20,5 +21,5 @@ void main() {
     vec3 irradiance;
     for (int i = 0; i < 3; ++i) irradiance[i] = shDot(view_environment_sh[i], transfer);
     irradiance = max(irradiance, 0.0);  // four bands can ring below 0
-    ambient = vec4(surfaceAlbedo.rgb / 3.14159265358979 * irradiance, 1.0);
+    ambient = vec4(surfaceAlbedo.rgb / PI * irradiance, 1.0);
 }

@@ -7,6 +7,7 @@
 #include "lib/space.glsl"
 #include "lib/lights.glsl"
 #include "s3ho.transfer.glsl"
+#include "lib/constants.glsl"
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
@@ -35,5 +36,5 @@ void main() {
         arriving *= lobesShadowOf(i, worldPos, toLight, dot(normal, viewToLight));
         irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
     }
-    direct = vec4(texelFetch(albedo, pixel, 0).rgb / 3.14159265358979 * irradiance, 1.0);
+    direct = vec4(texelFetch(albedo, pixel, 0).rgb / PI * irradiance, 1.0);
 }

@@ -11,6 +11,7 @@
 #include "lib/sampling.glsl"
 #include "lib/lights.glsl"
 #include "lib/sh.glsl"
+#include "s3ho.packing.glsl"
 
 uniform sampler2D viewZ;
 uniform sampler2D albedo;
@@ -58,17 +59,17 @@ void main() {
     indirect = vec4(0.0);
     if (isBackground(surfaceZ) || offset.a <= 0.0) return;  // no sender
 
-    vec4 b0 = texelFetch(bounce0, pixel, 0), b1 = texelFetch(bounce1, pixel, 0), b2 = texelFetch(bounce2, pixel, 0);
-    vec4 b3 = texelFetch(bounce3, pixel, 0), b4 = texelFetch(bounce4, pixel, 0), b5 = texelFetch(bounce5, pixel, 0);
-    vec4 b6 = texelFetch(bounce6, pixel, 0);
-    vec3 seventh = vec3(b0.a, b1.a, b2.a), eighth = vec3(b3.a, b4.a, b5.a);
+    vec4 texels[7] = vec4[7](texelFetch(bounce0, pixel, 0), texelFetch(bounce1, pixel, 0), texelFetch(bounce2, pixel, 0),
+                             texelFetch(bounce3, pixel, 0), texelFetch(bounce4, pixel, 0), texelFetch(bounce5, pixel, 0),
+                             texelFetch(bounce6, pixel, 0));
+    vec3 c[9] = unpackBounce(texels);
 
     // band 1 of a lobe around n is -n.y, n.z, -n.x times a factor: that of the sum has the mean normal
-    vec3 senderNormal = vec3(-dot(b3.rgb, vec3(1.0)), -dot(b1.rgb, vec3(1.0)), dot(b2.rgb, vec3(1.0)));
+    vec3 senderNormal = vec3(-dot(c[3], vec3(1.0)), -dot(c[1], vec3(1.0)), dot(c[2], vec3(1.0)));
     if (dot(senderNormal, senderNormal) < 1e-20) return;  // black senders
     senderNormal = normalize(senderNormal);
     vec3 meanOffset = offset.xyz / offset.a;
-    float spread = sqrt(max(b6.a / offset.a - dot(meanOffset, meanOffset), 0.0));  // the standard deviation
+    float spread = sqrt(max(texels[6].a / offset.a - dot(meanOffset, meanOffset), 0.0));  // the standard deviation
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel);
     vec3 senderPos = viewPos + radius * (meanOffset + SENDER_LIFT * senderNormal);
     vec3 worldPos = (world_from_view * vec4(senderPos, 1.0)).xyz;
@@ -86,7 +87,7 @@ void main() {
     }
     vec3 irradiance;
     for (int k = 0; k < 3; ++k) {
-        mat4 transfer = mat4(b0[k], b1[k], b2[k], b3[k], b4[k], b5[k], b6[k], seventh[k], eighth[k],
+        mat4 transfer = mat4(c[0][k], c[1][k], c[2][k], c[3][k], c[4][k], c[5][k], c[6][k], c[7][k], c[8][k],
                              0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
         irradiance[k] = shDot(light[k], transfer);
     }

@@ -5,23 +5,23 @@
 // cosine has no band 3, so that 9 coefficients are enough: each is red, green and blue.
 //
 // Inputs:  viewZ, viewNormal; sender, here the albedo of each surface.
-// Outputs: bounce0 to bounce6: rgb coefficients 0 to 6, view space; the alphas of 0 to 2 are the rgb of coefficient 7,
-//          those of 3 to 5 the rgb of coefficient 8, and that of 6 is Σ w_i |d_i|².
+// Outputs: bounce0 to bounce6: the coefficients, view space, and Σ w_i |d_i|², as s3ho.packing.glsl packs them.
 //          sender_offset: rgb Σ w_i d_i, a Σ w_i, where w_i is the form factor of occluder i and d_i its offset from P, view
 //          space, in radii: s3ho.indirect.frag looks the lights' shadows up there.
 
 #include "s3ho.blocked.glsl"
 #include "lib/senders.glsl"
 #include "lib/sh.glsl"
+#include "s3ho.packing.glsl"
 
-layout(location = 0) out vec4 bounce0;
-layout(location = 1) out vec4 bounce1;
-layout(location = 2) out vec4 bounce2;
-layout(location = 3) out vec4 bounce3;
-layout(location = 4) out vec4 bounce4;
-layout(location = 5) out vec4 bounce5;
-layout(location = 6) out vec4 bounce6;
-layout(location = 7) out vec4 sender_offset;
+out vec4 bounce0;
+out vec4 bounce1;
+out vec4 bounce2;
+out vec4 bounce3;
+out vec4 bounce4;
+out vec4 bounce5;
+out vec4 bounce6;
+out vec4 sender_offset;
 
 void main() {
     Receiver receiver;
@@ -43,11 +43,12 @@ void main() {
         sender_offset += weight * vec4(offset, 1.0);
         squaredOffset += weight * dot(offset, offset);
     }
-    bounce0 = vec4(sum[0], sum[7].r);
-    bounce1 = vec4(sum[1], sum[7].g);
-    bounce2 = vec4(sum[2], sum[7].b);
-    bounce3 = vec4(sum[3], sum[8].r);
-    bounce4 = vec4(sum[4], sum[8].g);
-    bounce5 = vec4(sum[5], sum[8].b);
-    bounce6 = vec4(sum[6], squaredOffset);
+    vec4 texels[7] = packBounce(sum, squaredOffset);
+    bounce0 = texels[0];
+    bounce1 = texels[1];
+    bounce2 = texels[2];
+    bounce3 = texels[3];
+    bounce4 = texels[4];
+    bounce5 = texels[5];
+    bounce6 = texels[6];
 }

@@ -24,7 +24,7 @@ from aolab.gl.texture import Pool
 from aolab.modules.passes import Pass
 from aolab.pipeline.pass_runner import PassRunner
 
-os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which else asks for X11
+os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which otherwise needs X11
 os.environ.setdefault("LP_NUM_THREADS", "1")  # threads of llvmpipe in each worker: the workers use the cores already
 
 CHECKOUT = Path(__file__).parents[1]

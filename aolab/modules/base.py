@@ -1,4 +1,4 @@
-"""What a module is: parameters, what it gives, and its passes. No GL in here."""
+"""Modules: their parameters, their outputs and their passes. No OpenGL in here."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -116,14 +116,15 @@ class Module(Parameters):
 
     `name` (lower case), `title`, `paper` (citation), `shader` (a file under glsl/, GLSL text, or the path of a file of
     your own, relative to the Python file or to the working directory), `outputs` (buffer: format), `derived` (name:
-    function of the frame and of "" or "_raw", for what is read off its outputs). `lit` says that the estimate itself
-    reads the environment, so that new light asks for a new estimate. `buffers` describes outputs and derived buffers
-    that the table of buffers lacks.
-    A module gives `visibility`, and may give `irradiance`, the environment's with occlusion: the lighting reflects it
-    in place of its own. A shader's `const int x;` and `uniform float x;` are filled with the parameter `x`.
+    function of the frame and of "" or "_raw"; a buffer computed from the outputs). With `lit`, the estimate reads the
+    environment, so that relighting computes it again. `buffers` describes outputs and derived buffers that the table of
+    buffers lacks.
+    The lighting multiplies ambient light by the output `visibility`. If there is an output `irradiance`, the
+    environment's with occlusion, the lighting reflects that instead. A shader's `const int x;` and `uniform float x;`
+    are filled with the parameter `x`.
     Raises `ParameterError`, when the class is made, for a parameter or an output whose name belongs to the pipeline.
 
-    The parameters of the chosen occluder kind and filter stand beside the module's own: `SSAO(occluders="layers",
+    The parameters of the chosen occluder kind and filter are parameters of the module, too: `SSAO(occluders="layers",
     layers=3).layers` is 3.
     """
 
@@ -140,7 +141,7 @@ class Module(Parameters):
     choices: ClassVar[Mapping[str, Mapping[str, type[Choice]]]] = {"occluders": OCCLUDERS, "filter": FILTERS}
 
     occluders: OccludersByName = parameter(
-        "depth", "What is tested for blocking: the camera's depth, `layers` of it, peeled, or further `views`."
+        "depth", "The data that is tested for blocking: the camera's depth, peeled `layers` of it, or further `views`."
     )
     filter: FilterByName = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
@@ -247,16 +248,21 @@ class Module(Parameters):
         radius = getattr(self, "radius", None)
         return radius if isinstance(radius, (int, float)) else None
 
+    @classmethod
+    def has_radius(cls) -> bool:
+        """Whether the method has a radius of occlusion."""
+        return "radius" in cls.model_fields
+
     def passes(self) -> list[Pass]:
         """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
         return [Pass(self.name or type(self).__name__, self.shader, self.outputs)]
 
     def estimate(self) -> Estimate:
-        """What is computed from the surfaces, before any lighting."""
+        """The estimate: computed from the surfaces, before any lighting."""
         return Estimate(self.passes(), self.outputs)
 
     def lighting(self) -> Sequence[Pass | Estimate]:
-        """What lights the surfaces once the estimate is known: steps that give `direct` and `ambient` radiance.
+        """The steps that light the surfaces after the estimate; they compute `direct` and `ambient` radiance.
 
         Each step may read the outputs of those before it. A step that takes samples is an `Estimate`.
         """
@@ -265,7 +271,7 @@ class Module(Parameters):
         return [DIRECT, replace(AMBIENT, constants={"occluded": "visibility" in self.outputs})]
 
     def bounce(self) -> Estimate | None:
-        """What is computed from the lit surfaces (`sender`, RGB radiance): `bounce`, an irradiance; or nothing."""
+        """An estimate over the lit surfaces (`sender`, RGB radiance) of `bounce`, an irradiance; None for no bounce."""
         return None
 
     def all_passes(self) -> list[Pass]:
@@ -276,15 +282,15 @@ class Module(Parameters):
         return found
 
     def sends(self) -> bool:
-        """Whether what blocks is asked for its light or albedo; then hidden surfaces are drawn with theirs."""
+        """Whether the shaders read the light or albedo of occluders; then hidden surfaces are drawn with theirs."""
         return self.bounce() is not None
 
     def tables(self) -> "Mapping[str, Table]":
-        """Textures that are made of the environment, by the name of their sampler."""
+        """Textures computed from the environment, by the name of their sampler."""
         return {}
 
     def samples(self, seed: int) -> dict[str, bytes]:
-        """Uniform arrays that depend on the seed; another seed is another sample set."""
+        """Uniform arrays that depend on the seed; each seed is a sample set."""
         return {}
 
     def question(self) -> Question:
@@ -293,7 +299,7 @@ class Module(Parameters):
         return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True)
 
     def resolved(self, scene: Scene) -> Self:
-        """The same with every `auto` made a number for this scene."""
+        """The module with a number for this scene in place of every `auto`."""
         if getattr(self, "radius", None) == AUTO:
             return self.replace(radius=auto_radius(scene))
         return self

@@ -45,6 +45,7 @@ SURFACES = _table(
 ON_DEMAND = _table(
     Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
     Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),
+    Buffer("emission", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The radiance that the material sends by itself."),
     Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
 )
 

@@ -1,14 +1,15 @@
-"""What methods share that march directions: the Python side of glsl/lib/march.glsl."""
+"""The parameters and samples of methods that march directions: the Python side of glsl/lib/march.glsl."""
 
 from ..maths.sampling import cosine_hemisphere
 from .base import Bias, Directions, Falloff, Module, Radius, Steps, Thickness
 
 
 class Marched(Module):
-    """A method that looks into cosine-distributed directions, each marched in `steps` points until something blocks.
+    """A method with cosine-distributed directions, each tested for blocking at `steps` points.
 
-    Its shader includes lib/march.glsl and asks whether direction `i` is blocked, and by what. Of equal taps, 8 × 4 had
-    less error than 16 × 2 on all six scenes (`aolab bench --quality`); the thickness is fitted (`aolab tune`).
+    Its shader includes lib/march.glsl, whose functions return whether direction `i` is blocked, and by which occluder.
+    With as many taps, 8 × 4 had less error than 16 × 2 on all six scenes (`aolab bench --quality`). The thickness is
+    fitted (`aolab tune`).
     """
 
     radius: Radius = "auto"

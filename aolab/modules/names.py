@@ -12,9 +12,8 @@ from .parameters import Choice
 # tests/pipeline/test_names.py compares these with the names that the pipeline gives
 OWNERS: dict[str, tuple[str, ...]] = {
     "the view": (
-        "ray_from_pixel", "pixel_from_ray", "texel_size", "view_region", "view_from_world", "world_from_view",
-        "clip_from_view",
-        "clip_from_world", "small_ray_from_pixel",
+        "ray_from_pixel", "pixel_from_ray", "texel_size", "view_region", "world_origin", "view_from_world",
+        "world_from_view", "clip_from_view", "clip_from_world", "small_ray_from_pixel",
     ),
     "the lights": (
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
@@ -22,7 +21,9 @@ OWNERS: dict[str, tuple[str, ...]] = {
     ),
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel",),
-    "the mesh": ("base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided"),
+    "the mesh": (
+        "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission", "one_sided", "cut_outs",
+    ),
     "the last frame": ("has_last", "last_from_view", "last_pixel_from_ray"),
 }  # fmt: skip
 

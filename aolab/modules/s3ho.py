@@ -39,6 +39,12 @@ def _within_bounds(transfer: np.ndarray) -> np.ndarray:
     return np.concatenate(bands, axis=-1)
 
 
+def unpacked(texels: np.ndarray) -> np.ndarray:
+    """(..., 9, 3): coefficients of the bounce by colour, of its texels (..., 7, 4); twin of glsl/s3ho.packing.glsl."""
+    last = np.stack([texels[..., 0:3, 3], texels[..., 3:6, 3]], axis=-2)
+    return np.concatenate([texels[..., :3], last], axis=-2)
+
+
 def _column(i: int) -> Callable[[Readable, str], np.ndarray]:
     """Coefficients 4 i to 4 i + 3, as the reference's buffers have them."""
     return lambda frame, raw: frame.once(f"sh{raw}", lambda: _coefficients(frame, raw))[..., 4 * i : 4 * i + 4]

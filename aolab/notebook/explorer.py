@@ -144,7 +144,7 @@ class Explorer(anywidget.AnyWidget):
 
     def _against_truth(self, frame: Frame, buffer: str, view: str) -> tuple[bytes, bytes, str]:
         """The truth, or the error, of a buffer; the reference is traced once for each camera, reach and buffer."""
-        module = self.module if hasattr(self.module, "radius") else None
+        module = self.module if self.module.has_radius() else None
         reach = [str(getattr(self.module, name, "")) for name in ("radius", "falloff")]
         key = repr((buffer, self.camera, reach))
         if key not in self._truths:

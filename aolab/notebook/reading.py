@@ -9,6 +9,7 @@ from ..errors import ParameterError
 from ..gl.texture import Size
 from ..maths.harmonics import hanning, light_lobe, rotate, zonal_lobe
 from ..modules import MODULES, S3HO
+from ..modules.s3ho import BOUNCE, unpacked
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
 from ..scene.lights import DirectionalLight
@@ -19,7 +20,6 @@ from ..truth.points import pixel_rays
 from .glyph import Glyph
 
 HARMONICS = [f"sh{i}" for i in range(4)]
-BOUNCE = [f"bounce{i}" for i in range(7)]
 
 
 def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
@@ -113,8 +113,8 @@ def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:
 
 
 def _bounce(here: Frame) -> np.ndarray:
-    """c_SSGI (16, 3), world space: nine coefficients, then zeros. glsl/s3ho.senders.frag defines the layout."""
+    """c_SSGI (16, 3), world space: nine coefficients, then zeros."""
     texels = np.concatenate([here[name][0] for name in BOUNCE])  # (7, 4)
     seen = np.zeros((16, 3))
-    seen[:7], seen[7], seen[8] = texels[:, :3], texels[:3, 3], texels[3:6, 3]
+    seen[:9] = unpacked(texels)
     return rotate(seen.T, here.camera.view_from_world[:3, :3].T).T

@@ -1,6 +1,6 @@
-"""Runs what happens to an estimate before it lights anything: accumulation, noise removal, upsampling.
+"""Runs the passes between an estimate and the lighting: accumulation, noise removal, upsampling.
 
-A pass treats up to four buffers alike, and asks the geometry once for all of them (glsl/lib/sources.glsl).
+A pass treats up to four buffers alike, and reads the geometry once for all of them (glsl/lib/sources.glsl).
 """
 
 from collections.abc import Iterator, Mapping

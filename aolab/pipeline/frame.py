@@ -1,4 +1,4 @@
-"""What a render gives back: every buffer by name, read when asked for, and the image."""
+"""The result of a render: every buffer by name, read on demand, and the image."""
 
 import weakref
 from collections.abc import Callable, Iterator, Mapping
@@ -28,9 +28,9 @@ class Frame:
     """One rendered frame.
 
     `frame["visibility"]` is a NumPy array, (H, W) or (H, W, channels) float32, top row first; `frame.buffers` lists
-    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` says how it
-    was made: renderer, module, parameters, camera, size, seed, ...; `notes` what was repaired or left out. A frame
-    keeps its textures until it is dropped, so frames may be held and compared; each costs 80 to 300 bytes a pixel.
+    the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` has the
+    settings: renderer, module, parameters, camera, size, seed, ...; `notes` the repairs and omissions. A frame keeps
+    its textures until it is dropped, so that frames may be kept and compared; each costs 80 to 300 bytes a pixel.
     """
 
     textures: Mapping[str, moderngl.Texture | np.ndarray]
@@ -40,14 +40,14 @@ class Frame:
     notes: list[str] = field(default_factory=list)
     # read off other buffers: each a function of the frame and of "" or "_raw"
     derived: Mapping[str, tuple[Callable[[Self, str], np.ndarray], str]] = field(default_factory=dict)
-    table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # what is known of the buffers
-    scene: Scene | None = field(default=None, repr=False)  # what is shown, as it was lit
-    kept: Any = field(default=None, repr=False)  # what its lab needs to light it again
+    table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # describes the buffers
+    scene: Scene | None = field(default=None, repr=False)  # as it was lit
+    kept: Any = field(default=None, repr=False)  # for its lab, to light it again
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def buffers(self) -> list[str]:
-        """The names that `frame[name]` knows."""
+        """The names of all buffers."""
         return sorted({*self.textures, *self.derived})
 
     @property
@@ -78,7 +78,7 @@ class Frame:
         return source if isinstance(source, np.ndarray) else handed(read)(source)
 
     def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
-        """What `make` gives, made when first asked for under this name: what several derived buffers share."""
+        """The result of `make`, computed at the first call with this name: for values that several buffers share."""
         if name not in self._arrays:
             self._arrays[name] = make()
         return self._arrays[name]

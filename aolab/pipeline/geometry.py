@@ -8,6 +8,7 @@ import numpy as np
 
 from ..gl import context
 from ..gl.program import Program
+from ..gl.source import Constant
 from ..gl.texture import refuse_exhaustion
 from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Instance, Scene
@@ -20,7 +21,22 @@ MESH_UNIFORMS: dict[str, object] = {
     "blended": False,
     "mesh_number": 0.0,
     "single_sided": False,
+    "emission": (0.0, 0.0, 0.0),
 }
+# the units of each mesh's textures
+MESH_UNITS = {"base_texture": 0, "emission_texture": 1}
+
+
+def kinds_of(scene: Scene) -> dict[str, Constant]:
+    """Constants: whether some mesh of the scene is single-sided, and whether some has holes or is blended.
+
+    Most scenes have none of them, and their shaders are spared the tests.
+    """
+    materials = [instance.mesh.material for instance in scene.instances]
+    return {
+        "one_sided": any(not material.double_sided for material in materials),
+        "cut_outs": any(material.blend or material.alpha_cutoff is not None for material in materials),
+    }
 
 
 @dataclass
@@ -42,7 +58,7 @@ class Geometry:
         self._white: moderngl.Texture | None = None
 
     def draw(self, scene: Scene, program: Program) -> None:
-        """Draw every instance; sets the program's `MESH_UNIFORMS`, and puts base_texture on unit 0."""
+        """Draw every instance; sets the program's `MESH_UNIFORMS`, and puts textures on `MESH_UNITS`."""
         for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
             gpu = self._place(mesh, placements, scene.shader_origin)
             self._use_material(mesh, number, program)
@@ -97,6 +113,7 @@ class Geometry:
             "blended": material.blend,
             "mesh_number": float(number),
             "single_sided": not material.double_sided,
+            "emission": material.emission,
         }
         texture = self._white_texture()
         if material.texture is not None:
@@ -106,7 +123,11 @@ class Geometry:
         for name, value in values.items():
             if name in program.uniforms:  # a compiler may find that an edited shader does not need it
                 program.uniforms[name].value = value
-        texture.use(0)
+        texture.use(MESH_UNITS["base_texture"])
+        if "emission_texture" in program.samplers:
+            glowing = material.emission_texture
+            emission = self._white_texture() if glowing is None else self._texture(glowing, None)
+            emission.use(MESH_UNITS["emission_texture"])
 
     def _white_texture(self) -> moderngl.Texture:
         if self._white is None:

@@ -42,8 +42,8 @@ DEFAULT_SIZE = (1280, 720)
 class Lab:
     """Renders scenes with modules. One lab for a session is enough; `aolab.render` keeps one of its own.
 
-    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame;
-    one that does not compile raises once, and then the last good program is used until the next edit.
+    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame. A
+    file that does not compile raises once; then the last good program is used until the next edit.
     """
 
     @handed
@@ -120,11 +120,12 @@ class Lab:
         exposure: float | None = None,
         tone_map: ToneMap | None = None,
     ) -> Frame:
-        """The same view under another light: only what light has a part in is computed again.
+        """The same view under another light: only the lighting is computed again.
 
-        What is not given stays as it was in `frame`, a frame of `render` or `relight`. Where occlusion is apart from
-        light (`ssao`, `ssbn`, `s3ho`) its estimate stays; SSDO looks the environment up for each direction and has to
-        look again. Raises `ParameterError` for a frame that no lab rendered, and what `render` raises.
+        Arguments that are not given stay as they are in `frame`, a frame of `render` or `relight`. Modules whose
+        estimate does not depend on light (`ssao`, `ssbn`, `s3ho`) keep it; SSDO reads the environment in each
+        direction, so that its estimate is computed again.
+        Raises `ParameterError` for a frame that no lab rendered, and the errors of `render`.
         """
         start = perf_counter()
         if not isinstance(frame, Frame) or not isinstance(frame.kept, SurfaceState):
@@ -180,7 +181,7 @@ class Lab:
             self._sizes = sizes
 
     def _state(self, frame: FrameContext) -> SurfaceState:
-        """The surfaces, and the module's estimate if no light takes part in it."""
+        """The surfaces, and the module's estimate if it does not depend on light."""
         module, view, runner = frame.module, frame.view, frame.runner
         with self._lending(runner):
             large = frame.rasterizer.surfaces([view], formats=surface_formats(frame))
@@ -194,7 +195,7 @@ class Lab:
         return lend(state, self._pool, lent)
 
     def _lit(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
-        """A frame from what is known of the surfaces, under the light of the rasterizer's scene."""
+        """A frame from kept surfaces, under the light of the rasterizer's scene."""
         state = kept.under(rasterizer)
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
         module, view = frame.module, frame.view

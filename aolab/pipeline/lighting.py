@@ -82,7 +82,7 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
 
 
 def light(state: SurfaceState, lights: Lights) -> Buffers:
-    """`direct` and `ambient` radiance, and what else the module's lighting steps give."""
+    """`direct` and `ambient` radiance, and all other outputs of the module's lighting steps."""
     frame, lit = state.frame, {}
     shining = lights.seen_from(frame.view)
     for step in frame.module.lighting():

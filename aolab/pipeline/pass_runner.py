@@ -18,7 +18,7 @@ Buffers = dict[str, moderngl.Texture]
 
 
 class PassRunner:
-    """What all passes of one frame share: programs, the pool, the frame's textures and its timer."""
+    """Runs the passes of one frame: programs, the pool of textures, the frame's own textures, and its timer."""
 
     def __init__(self, programs: Programs, pool: Pool) -> None:
         self.programs, self.pool = programs, pool

@@ -11,7 +11,7 @@ from ..gl.texture import Depth, attach
 from ..modules.passes import GeometryPass, Pass
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
-from .geometry import MESH_UNIFORMS, Geometry
+from .geometry import MESH_UNIFORMS, MESH_UNITS, Geometry, kinds_of
 from .pass_runner import Buffers, PassRunner
 from .surfaces import G_BUFFER, g_buffer
 
@@ -78,7 +78,7 @@ class Rasterizer:
         return buffers
 
     def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Buffers:
-        """The outputs of a geometry pass, seen from where it says; `view` is the camera's."""
+        """The outputs of a geometry pass from its viewpoint; `view` is the camera's."""
         seen_from = view if step.seen_from is None else step.seen_from(self.scene, view)
         return self.triangles(step, [seen_from], bindings)
 
@@ -96,7 +96,7 @@ class Rasterizer:
         """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one."""
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
-        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS)
+        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
         own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
         views = [Bindings("the view", uniforms=viewpoint.uniforms) for viewpoint in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
@@ -106,7 +106,7 @@ class Rasterizer:
         targets = runner.targets(step, size)
         # a depth texture alone is not kept in the pool, which would keep it for good
         framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
-        runner.bind(program, given[0].textures, step.reads, {"base_texture": 0})
+        runner.bind(program, given[0].textures, step.reads, MESH_UNITS)
         with runner.timer.measure(step.name):
             _clear(runner, framebuffer, step, targets, size)
             gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)

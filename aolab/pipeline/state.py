@@ -1,4 +1,4 @@
-"""What the passes of one frame share, and what of it is kept so that the frame can be lit again."""
+"""The state of a frame: the context of its passes, and the surfaces that are kept to light it again."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from .rasterizer import Rasterizer
 
 @dataclass(frozen=True, eq=False)
 class FrameContext:
-    """What all passes of one frame share: the means to draw, the module, the camera's view and the sample sets.
+    """The context of all passes of one frame: the means to draw, the module, the camera's view and the sample sets.
 
     `seeds` are averaged over.
     """
@@ -65,7 +65,7 @@ class FrameContext:
 
 @dataclass(frozen=True, eq=False)
 class SurfaceState:
-    """All of a frame that light has no part in: a frame keeps it, so that it can be lit again.
+    """The surfaces and the estimate of a frame. They do not depend on light, so that the frame can be lit again.
 
     `large` are the surfaces at full size, `small` those at the module's scale, with `small_view`. `estimate` holds the
     module's outputs unless the module is `lit`.

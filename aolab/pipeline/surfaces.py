@@ -1,4 +1,4 @@
-"""Surfaces: what the camera sees, before any light (the G-buffer), and its smaller copy."""
+"""The G-buffer: the surfaces that the camera sees, before any light; and its smaller copy."""
 
 from collections.abc import Mapping
 

@@ -82,6 +82,7 @@ class View:
             "pixel_from_ray": (1 / scale_x, 1 / scale_y, -offset_x / scale_x, -offset_y / scale_y),
             "texel_size": (1 / self.sheet[0], 1 / self.sheet[1]),
             "view_region": tuple(np.divide((*self.origin, *np.add(self.origin, self.size)), self.sheet * 2)),
+            "world_origin": tuple(shader_origin(self.bounds)),
             "view_from_world": matrix_bytes(view_from_world),
             "world_from_view": matrix_bytes(np.linalg.inv(view_from_world)),
             "clip_from_view": matrix_bytes(self.camera.clip_from_view(self.size, self.bounds)),
@@ -101,6 +102,8 @@ class View:
 @dataclass(frozen=True)
 class Projection:
     """Any view and projection matrix, (4, 4), at a resolution: a light's map, or a grid seen along an axis.
+
+    The world is that of the shaders, whose origin is `shader_origin`.
 
     `origin` and `atlas` as of `View`. A shader gets the matrices and `texel_size`; it has no rays of a pinhole.
     """

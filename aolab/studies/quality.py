@@ -144,7 +144,7 @@ def _chosen(modules: Iterable[str | Module | type[Module]] | None, judge: SSAO, 
         if "visibility" not in {*module.outputs, *module.derived}:
             given = ", ".join(module.outputs)
             warnings.warn(f"{label(type(module))} is left out: it has {given}, no visibility", Notice, stacklevel=3)
-        elif hasattr(module, "radius"):
+        elif module.has_radius():
             chosen.append(module.replace(radius=judge.radius))
         else:
             chosen.append(module.resolved(scene))

@@ -123,7 +123,7 @@ def with_their_truth(scene: Scene, modules: Modules, radius: float | None = None
 
 
 def _with_radius(module: Module, radius: float | None) -> Module:
-    if radius is None or not hasattr(module, "radius"):
+    if radius is None or not module.has_radius():
         return module
     return module.replace(radius=radius)  # type: ignore[return-value]
 
@@ -148,7 +148,7 @@ def _text(entry: Entry) -> str:
     ]
     regions = [(name, where.rmse) for name, where in one.measures.items() if name != "all" and where.pixels]
     rows += [("", ""), ("rmse at", ""), *regions]
-    if isinstance(radius := getattr(entry.module, "radius", None), float):
+    if (radius := entry.module.occlusion_radius) is not None:
         rows += [("", ""), ("radius", radius)]
     rows.append(("frame, ms", f"{entry.milliseconds:.1f}"))
     return table({"": "", " ": ".4g"}, rows).lstrip("\n")

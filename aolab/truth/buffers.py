@@ -15,8 +15,9 @@ PI = np.float32(np.pi)
 class Buffer:
     """`value` and `variance` return (n, channels) from the moments of `integrals` and from the albedo (n, 3) there.
 
-    `crosses` are the pairs of integrals whose covariance `variance` looks at. The integral `light` is the lights'
-    irradiance at the points; it is exact, and costs no rays over the hemisphere.
+    The channels are those of the table of all buffers, `aolab.modules.buffers`. `crosses` are the pairs of integrals
+    whose covariance `variance` looks at. The integral `light` is the lights' irradiance at the points; it is exact, and
+    costs no rays over the hemisphere.
     """
 
     integrals: tuple[str, ...]

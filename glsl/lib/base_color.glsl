@@ -2,6 +2,9 @@
 // Set for each mesh: base_texture, base_color, alpha_cutoff (below it there is a hole), blended (alpha is the share of
 // the pixels that show the surface), mesh_number (from 0 on), single_sided (the surface is seen from its front only).
 
+const bool one_sided;   // some mesh of the scene is single_sided
+const bool cut_outs;    // some mesh of the scene has holes, or is blended
+
 uniform sampler2D base_texture;
 uniform vec4 base_color;
 uniform float alpha_cutoff;
@@ -29,8 +32,8 @@ float ditherThreshold(vec2 pixel, float surface) {
 // Near, a texel's alpha decides (alpha_cutoff). In the texture's smaller levels alpha holds the share of the texels that
 // are above the cutoff, and that share of the pixels is drawn: leaves do not vanish in the distance.
 bool isHole(float alpha, vec2 uv, float winding) {
-    if (single_sided && winding != 0.0 && gl_FrontFacing == (winding < 0.0)) return true;
-    if (!blended && alpha_cutoff <= 0.0) return false;
+    if (one_sided && single_sided && winding != 0.0 && gl_FrontFacing == (winding < 0.0)) return true;
+    if (!cut_outs || (!blended && alpha_cutoff <= 0.0)) return false;
     float threshold = ditherThreshold(gl_FragCoord.xy, mesh_number);
     if (blended) return alpha <= threshold;
     vec2 texels = vec2(textureSize(base_texture, 0));

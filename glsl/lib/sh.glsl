@@ -5,6 +5,8 @@
 // Directions are unit vectors in the space in which the coefficients were projected; for an environment, world space.
 // 16 coefficients are a mat4: column k, and a texel of texture `sh_k`, has the coefficients 4k .. 4k + 3.
 
+#include "lib/constants.glsl"
+
 // The factors of the polynomials in shBasis.
 const mat4 SH_SCALE = mat4(
     0.28209479177387814,                                                // sqrt(1 / 4pi)
@@ -23,7 +25,7 @@ const mat4 SH_SCALE = mat4(
 const vec4 SH_ZONAL = sqrt(radians(720.0) / vec4(1.0, 3.0, 5.0, 7.0));
 
 // SH_ZONAL times the zonal coefficients of the clamped cosine (Ramamoorthi & Hanrahan 2001, eq. 8).
-const vec4 SH_COSINE = radians(180.0) * vec4(1.0, 2.0 / 3.0, 0.25, 0.0);
+const vec4 SH_COSINE = PI * vec4(1.0, 2.0 / 3.0, 0.25, 0.0);
 
 // The 16 basis functions y_i at the unit vector d.
 mat4 shBasis(vec3 d) {
@@ -60,7 +62,7 @@ mat4 shClampedCosine(vec3 d) {
 // Weights of the Hann window against ringing, `width` > 0 in bands (Sloan 2008); a smaller width is smoother.
 vec4 shHanning(float width) {
     vec4 band = vec4(0.0, 1.0, 2.0, 3.0);
-    return (0.5 + 0.5 * cos(radians(180.0) * band / width)) * vec4(lessThan(band, vec4(width)));
+    return (0.5 + 0.5 * cos(PI * band / width)) * vec4(lessThan(band, vec4(width)));
 }
 
 // Zonal coefficients, for shZonal, of a light without size; `window` comes from shHanning, or is all 1. The lobe is

@@ -4,7 +4,7 @@
 
 #include "occluders/surfaces.glsl"
 
-// What blocks: where, in view space, and where its properties are stored.
+// A blocker: its position in view space, and the place of its properties in the textures.
 struct Occluder {
     vec3 viewPos;
     vec2 uv;

@@ -12,7 +12,7 @@ uniform sampler2D sender1;     // RGB radiance that leaves the surfaces of each 
 uniform sampler2D sender2;
 uniform sampler2D sender3;
 
-// What blocks: where, in view space, and where its properties are stored.
+// A blocker: its position in view space, and the place of its properties in the textures.
 struct Occluder {
     vec3 viewPos;
     vec2 uv;

@@ -11,3 +11,4 @@ uniform vec2 texel_size;       // 1 / resolution
 uniform vec4 pixel_from_ray;
 uniform mat4 view_from_world;
 uniform mat4 world_from_view;
+uniform vec3 world_origin;     // to add to world positions: not 0 where a scene is far from the origin

@@ -22,22 +22,22 @@ uniform mat4 camera_from_view[views];
 
 const float UNKNOWN = 3.0e38;
 
-// What blocks: where, in the camera's view space, and where its properties are stored. View 0 is the camera.
+// A blocker: its position in the camera's view space, and the place of its properties. View 0 is the camera.
 struct Occluder {
     vec3 viewPos;
     vec2 uv;         // of the camera's picture, or of the atlases
     int view;
 };
 
-// Is the view-space point `samplePos` blocked for the receiver, and by what? Off its picture, a view knows nothing.
+// Is the view-space point `samplePos` blocked for the receiver, and by what? Outside of its picture, a view has no effect.
 bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.view = 0;
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
     bool onScreen = all(lessThan(abs(occluder.uv - 0.5), vec2(0.5)));
     float depthBehind = onScreen ? surfaceZ - samplePos.z : UNKNOWN;
-    // a texel's depth is its centre's, and P was lifted for the camera's pixels, not for a view's: where the camera knows
-    // nothing, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
+    // a texel's depth is its centre's, and the receiver was lifted for the camera's pixels, not for a view's: off the
+    // screen, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
     float share = onScreen ? 1.0 : 1.0 - 2.0 * view_pixel_width;  // of a distance, that must be exceeded
     bool insideSolid = false;
     vec3 thereOfNearest = samplePos;

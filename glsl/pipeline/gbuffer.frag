@@ -1,15 +1,17 @@
-// The G-buffer: what the camera sees, before any light.
+// The G-buffer: the surfaces that the camera sees, before any light.
 // Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
 //          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w 0)
 //          surfaceAlbedo  linear diffuse albedo; a is 1 where a surface is, and 0 in the background (RGBA16F)
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
+//            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 
 #include "lib/space.glsl"
 
 const bool with_uv;
 const bool with_tangent;
+const bool with_emission;
 const bool with_motion;
 const bool has_last;   // there is a last frame to have moved from
 const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
@@ -17,6 +19,8 @@ const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's 
 #include "lib/base_color.glsl"
 
 uniform sampler2D nearerZ;
+uniform sampler2D emission_texture;
+uniform vec3 emission;
 uniform vec4 pixel_from_ray;
 uniform mat4 last_from_view;        // the last camera's view space from this one's
 uniform vec4 last_pixel_from_ray;
@@ -32,6 +36,7 @@ out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
+out vec4 surfaceEmission;
 out vec2 surfaceMotion;
 
 // The derivative of the position by u, of unit length and in the surface.
@@ -58,6 +63,7 @@ void main() {
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
+    if (with_emission) surfaceEmission = vec4(emission * texture(emission_texture, uv).rgb, 1.0);
     if (with_motion) {
         vec3 lastPos = (last_from_view * vec4(viewPos, 1.0)).xyz;
         surfaceMotion = has_last ? pixelAt(viewPos, pixel_from_ray) - pixelAt(lastPos, last_pixel_from_ray) : vec2(0.0);

@@ -1,4 +1,4 @@
-// What leaves each surface before any bounce: direct + ambient light.
+// The light that leaves each surface before any bounce: direct + ambient.
 // Inputs: direct, ambient. Output: sender, linear RGB radiance.
 
 uniform sampler2D direct;

@@ -47,7 +47,7 @@ def test_another_thread_is_told_what_to_do(lab, plane):
         assert "multiprocessing.get_context('spawn')" in str(error)
 
 
-def test_what_was_read_may_be_used_in_any_thread(lab, plane):
+def test_an_array_that_was_read_may_be_used_in_any_thread(lab, plane):
     frame = lab.render(plane)
     image = frame.image
     assert in_a_thread(lambda: np.testing.assert_array_equal(frame.image, image)) is None

@@ -1,4 +1,4 @@
-"""The shared GLSL against its NumPy twins and against what it says of itself."""
+"""The shared GLSL against its NumPy twins and against its own properties."""
 
 import numpy as np
 import pytest
@@ -70,7 +70,7 @@ def test_each_block_of_4x4_pixels_holds_every_set_once(glsl):
     y, x = np.mgrid[0:12, 0:20]
     sets = glsl("lib/sampling.glsl", "result.x = float(interleavedSet(ivec2(x.xy)));", rows(x.ravel(), y.ravel()))
     sets = sets[:, 0].astype(int).reshape(12, 20)
-    for top in range(9):  # any window of 4×4, aligned or not: that is what the filters average
+    for top in range(9):  # any window of 4×4, aligned or not: the window of the filters
         for left in range(17):
             assert sorted(sets[top : top + 4, left : left + 4].ravel()) == list(range(16))
 

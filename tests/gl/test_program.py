@@ -1,4 +1,4 @@
-"""Programs: what a compiler says is told in our lines; edits are picked up; the last good program stays."""
+"""Programs: compiler errors name our lines; edits are picked up; the last good program stays."""
 
 import os
 
@@ -47,7 +47,7 @@ def test_a_text_shaders_error_counts_the_texts_lines(gl):
         Programs().get('#include "lib/space.glsl"\nout vec4 color;\nvoid main() {\n    color = oops;\n}\n')
 
 
-def test_what_compiles_but_does_not_link_is_an_error(gl):
+def test_a_shader_that_compiles_but_does_not_link_is_an_error(gl):
     with pytest.raises(ShaderError, match=r"<inline> does not compile:\n.*twice"):
         Programs().get("float twice(float x);\nout vec4 color;\nvoid main() { color = vec4(twice(1.0)); }\n")
 
@@ -73,7 +73,7 @@ def test_a_sampler_without_a_buffer_is_refused_with_the_nearest(lab, plane):
         lab.render(plane, Typing())
 
 
-def test_what_the_compiler_drops_needs_no_value(lab, plane):
+def test_a_uniform_that_the_compiler_drops_needs_no_value(lab, plane):
     class Lazy(Module):
         name = "lazy"
         shader = "uniform vec2 unused;\nout float visibility;\nvoid main() { visibility = 1.0; }\n"
@@ -149,7 +149,7 @@ def test_a_bad_edit_raises_while_watching_too(edited, break_it):
         lab.render(scene, "none")
     assert visibility(lab.render(scene, "none")) == 1  # said once; the last good program stays in use
     with pytest.raises(ShaderError, match=r"none\.frag"):
-        lab.reload()  # asked for, it says so again
+        lab.reload()  # an explicit reload raises again
     write(shader, good.replace("1.0", "0.75"))
     assert visibility(lab.render(scene, "none")) == 0.75
 

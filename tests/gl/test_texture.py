@@ -9,7 +9,7 @@ from aolab.gl.texture import FORMATS
 
 
 @pytest.mark.parametrize("format", FORMATS)
-def test_what_goes_in_comes_out_upside_up(gl, format):
+def test_a_texture_is_read_back_upside_up(gl, format):
     """GL's first row is the bottom one; an array's is the top one."""
     components, dtype = FORMATS[format]
     values = np.arange(3 * 5 * components).reshape(3, 5, components) % 200

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.e
 PARAMETERS = [(name, field) for name, module in MODULES.items() for field in module.model_fields]
 CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()]
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
-# `none` gives 1 everywhere: it asks for no occluders, and there is nothing to filter
+# `none` gives 1 everywhere: its shader includes no occluders, and there is nothing to filter
 WITHOUT_EFFECT = {("none", field) for field in MODULES["none"].model_fields if field != "scale"}
 
 
@@ -151,7 +151,7 @@ def test_every_parameter_is_stated_whole(name, field):
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_it_says_what_it_is(name):
+def test_it_has_a_name_a_title_a_citation_and_a_docstring(name):
     module = MODULES[name]
     assert module.name == name
     assert module.name.isidentifier()
@@ -170,7 +170,7 @@ def all_passes(module: type[Module]) -> list[Pass]:
 
 
 @pytest.mark.parametrize("name", MODULES)
-def test_its_shaders_say_what_they_do(name):
+def test_its_shaders_state_their_purpose_and_outputs(name):
     for step in all_passes(MODULES[name]):
         text = (paths.glsl() / step.shader).read_text()
         head = text[: text.index("\n\n")]

@@ -26,6 +26,7 @@ const bool inverted;
 uniform float height;
 uniform sampler2D viewZ;
 uniform mat4 world_from_view;
+uniform vec3 world_origin;
 uniform vec4 ray_from_pixel;
 out float visibility;
 
@@ -34,14 +35,14 @@ void main() {
     visibility = 1.0;
     if (isBackground(surfaceZ)) return;
     vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
-    visibility = clamp(worldPos.y / height, 0.0, 1.0);
+    visibility = clamp((worldPos.y + world_origin.y) / height, 0.0, 1.0);
     if (bands > 0) visibility = floor(visibility * float(bands)) / float(bands);
     if (inverted) visibility = 1.0 - visibility;
 }
 """
 
 
-def test_it_computes_what_it_says(lab, boxes):
+def test_it_computes_the_clamped_height(lab, boxes):
     frame = lab.render(boxes, HeightFog(height=2.0, filter="none"))
     y = small_scenes.world_positions(frame, boxes.camera)[..., 1][frame.mask]
     np.testing.assert_allclose(frame["visibility"][frame.mask], np.clip(y / 2, 0, 1), atol=2e-3)

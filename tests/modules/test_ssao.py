@@ -153,7 +153,7 @@ def test_the_automatic_radius_is_a_number_by_the_time_it_renders(lab, boxes):
 
 
 def test_nothing_off_the_screen_blocks(lab):
-    """A wall that the camera does not see leaves the floor open: image space knows no more."""
+    """A wall that the camera does not see leaves the floor open: it is not in image space."""
     scene = small_scenes.wall(camera=aolab.Camera((1.2, 3, 0), (1.2, 0, 0.0001), fov=20))
     frame = lab.render(scene, "ssao", radius=2.0, thickness=10.0)
     assert (frame["visibility"] == 1).all()

@@ -100,7 +100,7 @@ def test_the_cone_is_as_wide_as_the_opening(lab, weighting, tolerance):
 
 
 def test_both_sides_of_a_corner_get_one_colour(lab):
-    """What the S3HO paper says of bent normals: the light from the right is on the wall what it is on the floor."""
+    """The S3HO paper on bent normals: light from the right is the same on the wall as on the floor."""
     two = np.ones((64, 128, 3), np.float32) * 0.1
     two[:20, :, 0] = 3.0  # red from above
     two[24:40, 85:107, 2] = 3.0  # blue from the right, along the floor

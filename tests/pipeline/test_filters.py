@@ -1,4 +1,4 @@
-"""What the filters must keep, must not mix, and must remove; and the estimate at a lower resolution."""
+"""Filters keep constants, mix no two surfaces and remove noise; and the estimate at a lower resolution."""
 
 import numpy as np
 import pytest
@@ -68,7 +68,7 @@ def test_nothing_bleeds_around_a_sharp_edge_between_two_faces(lab, filter):
 @pytest.mark.parametrize("filter", FILTERS)
 @pytest.mark.parametrize("camera", [Camera((0, 5, 5), (0, 0, 0)), Camera((1, 2, 6), (0, 0, 0), up=(0.2, 1, 0))])
 def test_the_interleaved_pattern_cancels_on_a_plane(lab, filter, camera):
-    """Every window of the filter holds each of the 16 sets equally often: their mean, 15/32, is all that is left."""
+    """Every window contains each of the 16 sets equally often: their mean, 15/32, is all that is left."""
     frame = lab.render(small_scenes.plane(camera), Pattern(kind=1, filter=filter), size=(64, 48))
     inside = np.zeros((48, 64), bool)
     inside[24:-5, 5:-5] = True  # at the image's border a window holds some pixels twice
@@ -119,7 +119,7 @@ def test_half_resolution_is_close_to_full(lab, boxes):
 
 
 def test_upsampling_follows_the_full_size_silhouettes(lab):
-    """At a fifth of the resolution, the red shelf's edge is still where the full-size depth says, to the pixel."""
+    """At a fifth of the resolution, the red shelf's edge is still at the edge of the full-size depth, to the pixel."""
     frame = lab.render(steps(), Pattern(kind=2, filter="none", scale=0.2), size=(80, 80))
     np.testing.assert_array_equal(frame["visibility"], frame["albedo"][..., 0])
 

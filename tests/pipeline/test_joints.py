@@ -244,7 +244,7 @@ def test_an_estimate_may_bring_its_filter(lab, plane):
 
 
 class Below(OccluderKind):
-    """All that lies lower than `height` is solid; only in the left half of the picture, with `left_only`."""
+    """All that lies lower than `height` is solid; with `left_only`, in the left half of the picture only."""
 
     name = "below"
     uniforms = ("solid_color",)
@@ -258,7 +258,7 @@ class Below(OccluderKind):
     struct Occluder { vec3 viewPos; };
     bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
         occluder.viewPos = samplePos;
-        bool below = (world_from_view * vec4(samplePos, 1.0)).y < height;
+        bool below = (world_from_view * vec4(samplePos, 1.0)).y + world_origin.y < height;
         return below && !(left_only && receiver.uv.x > 0.5);
     }
     vec3 occluderNormal(Occluder occluder) { return mat3(view_from_world) * vec3(0.0, 1.0, 0.0); }
@@ -344,7 +344,26 @@ def test_texture_coordinates_and_tangents_are_drawn_where_a_pass_samples_them(la
     half = lab.render(scene, reading("uv", "xyxy"), filter="none", scale=0.5, size=SIZE)
     assert half["shown_raw"].shape == (24, 32, 4)
     np.testing.assert_allclose(half["shown_raw"][..., 0], frame_uv(half, scene.camera), atol=0.02)
-    assert not {"uv", "tangent", "motion"} & set(lab.render(scene, "ssao", size=SIZE).buffers)
+    assert not {"uv", "tangent", "motion", "emission"} & set(lab.render(scene, "ssao", size=SIZE).buffers)
+
+
+def test_emission_is_the_materials_times_its_texture(lab):
+    """The left half of a wall glows: the texture is black on the right."""
+    pixels = np.full((8, 16, 4), 255, np.uint8)
+    pixels[:, 8:, :3] = 0
+    glowing = Material((0.5, 0.5, 0.5), emission=(3.0, 2.0, 100000.0), emission_texture=aolab.Texture(pixels))
+    lamp = small_scenes.quad((-2, -1, 0), (4, 0, 0), (0, 2, 0), glowing)
+    dark = small_scenes.quad((-9, -9, -1), (18, 0, 0), (0, 18, 0))
+    scene = small_scenes.of(dark, lamp, camera=Camera((0, 0, 6), (0, 0, 0), fov=40))
+    frame = lab.render(scene, reading("emission", "xyzw"), filter="none", size=SIZE)
+    x, _, z = np.moveaxis(small_scenes.world_positions(frame, scene.camera), -1, 0)
+    on_lamp = z > -0.5
+    glows, black = (on_lamp & (low < x) & (x < high) for low, high in ((-1.8, -0.3), (0.3, 1.8)))  # off the seams
+    assert glows.sum() > 100
+    np.testing.assert_allclose(frame["emission"][glows], np.tile((3.0, 2.0, 1e5), (glows.sum(), 1)))
+    assert (frame["emission"][black] == 0).all()
+    assert (frame["emission"][~on_lamp] == 0).all()
+    np.testing.assert_array_equal(frame["shown"][..., :3], frame["emission"])
 
 
 def frame_uv(frame: aolab.Frame, camera: Camera) -> np.ndarray:
@@ -423,3 +442,26 @@ def test_no_occluders_are_drawn_for_a_module_whose_shaders_do_not_include_them(l
     plain = lab.render(boxes, "none").timings.keys()
     for kind in ("layers", "views"):
         assert lab.render(boxes, "none", occluders=kind).timings.keys() == plain
+
+
+# --- beyond the edge of a texture
+
+
+@pytest.mark.parametrize(("outside", "expected"), [({"mine": -2.0}, -2.0), ({}, 0.25)], ids=["declared", "nearest"])
+def test_the_maker_of_a_texture_declares_what_is_read_beyond_its_edge(lab, plane, outside, expected):
+    """A depth map of one's own, read one picture's width off to the right: nobody lists its name."""
+
+    class Off(Module):
+        def passes(self) -> list[Pass]:
+            write = "out float mine;\nvoid main() { mine = 0.25; }\n"
+            read = """
+            uniform sampler2D mine;
+            uniform vec2 texel_size;
+            out float visibility;
+            void main() { visibility = texture(mine, gl_FragCoord.xy * texel_size + vec2(1.0, 0.0)).r; }
+            """
+            return [Pass("write", write, {"mine": "R32F"}, outside=outside), Pass("read", read, {"visibility": "R32F"})]
+
+    for _ in range(2):  # textures come from a pool: the second time, the first one's
+        frame = lab.render(plane, Off, filter="none", size=SIZE)
+        assert (frame["visibility"][frame.mask] == expected).all()

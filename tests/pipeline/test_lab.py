@@ -124,7 +124,7 @@ def test_any_size(lab, boxes, module, size):
             assert np.isfinite(frame[name][frame.mask] if frame[name].shape[:2] == frame.mask.shape else 0).all(), name
 
 
-def test_a_frame_says_how_it_was_made(lab, boxes):
+def test_a_frame_records_its_settings(lab, boxes):
     camera = Camera((0, 4, 4), (0, 0, 0), fov=30)
     frame = lab.render(boxes, "ssao", camera=camera, seed=3, accumulate=2, exposure=1.5, tone_map="linear", radius=0.7)
     info = frame.info
@@ -191,7 +191,7 @@ def test_buffers_are_saved_by_name(lab, boxes, tmp_path):
         ({"directions": 0, "bias": 3}, r"directions = 0 is not valid.*; ssao: bias = 3 is not valid: .*in radii"),
     ],
 )
-def test_what_cannot_be_rendered_is_refused(lab, plane, arguments, message):
+def test_scenes_and_settings_that_cannot_be_rendered_are_refused(lab, plane, arguments, message):
     with pytest.raises(ParameterError, match=message):
         lab.render(plane, **arguments)
 
@@ -262,7 +262,7 @@ def test_relighting_runs_what_light_has_a_part_in(lab, boxes, name, again):
     assert set(relit.timings) - {"shadows"} == {"direct", "ambient", "compose", *again}
 
 
-def test_what_is_not_given_stays(lab, boxes):
+def test_light_that_is_not_given_stays(lab, boxes):
     lit = boxes.replace(environment=SUN, lights=(DirectionalLight((-1, -2, -1)),))
     first = lab.render(lit, "s3ho", exposure=0.25)
     same = lab.relight(first)
@@ -314,7 +314,7 @@ def test_a_relit_scene_is_not_the_named_one_any_more(lab):
         ({"environment": np.ones((2, 4, 3))}, "is not an Environment"),
     ],
 )
-def test_what_is_no_light_is_refused(lab, boxes, light, message):
+def test_values_that_are_no_light_are_refused(lab, boxes, light, message):
     frame = lab.render(boxes, "s3ho")
     with pytest.raises(aolab.SceneError, match=message):
         lab.relight(frame, **light)
@@ -332,7 +332,7 @@ def test_watching_sees_edits_of_lighting_shaders(shaders, boxes):
     assert lab.relight(frame)["ambient"].max() == 0
 
 
-def test_what_is_made_of_an_environment_is_made_once(lab, boxes, monkeypatch):
+def test_a_table_of_an_environment_is_made_once(lab, boxes, monkeypatch):
     made = []
     table = Cones.__call__
     monkeypatch.setattr(Cones, "__call__", lambda self, environment: made.append(1) or table(self, environment))

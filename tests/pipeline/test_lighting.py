@@ -1,4 +1,4 @@
-"""Light on surfaces, against what radiometry says; shadows, against where geometry puts them."""
+"""Light on surfaces, against radiometry; shadows, against geometry."""
 
 import numpy as np
 import pytest
@@ -138,7 +138,7 @@ def test_radiance_is_the_sum_and_exposure_multiplies_it_before_the_tone_map(lab,
 
 
 @pytest.mark.parametrize("kind", kinds())
-def test_a_boxs_shadow_lies_where_geometry_says(lab, kind):
+def test_a_boxs_shadow_is_the_shadow_of_its_geometry(lab, kind):
     """A post on the floor; a floor point is in shadow when the segment towards the light passes through the post."""
     low, high = np.array([-0.3, 0.0, -0.3]), np.array([0.3, 1.2, 0.3])
     light = kinds()[kind]

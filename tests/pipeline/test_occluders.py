@@ -1,4 +1,4 @@
-"""Peeled layers and further views: what they see that one depth does not, against rays and known geometry."""
+"""Peeled layers and further views, which see more than one depth layer, against rays and known geometry."""
 
 import warnings
 from dataclasses import replace
@@ -114,7 +114,7 @@ def slab_before_a_wall() -> aolab.Scene:
 
 
 def test_light_passes_behind_a_slab(lab):
-    """What is behind its back is open: no halo, where one depth without a range check has one."""
+    """Points behind its back are open: no halo, in contrast to one depth without a range check."""
     scene = slab_before_a_wall()
     truth = traced(scene, 1.0)
     of_kind = {kind: error(lab, scene, kind, truth, radius=1.0, thickness=10.0) for kind in ("depth", "layers")}
@@ -210,7 +210,7 @@ def test_open_meshes_are_named_once(lab, settings):
 
 
 def test_thickness_closes_what_is_open(lab, wall):
-    """A wall of one sheet, and nothing behind it, blocks as deep as the thickness says."""
+    """A wall of one sheet, and nothing behind it, blocks as deep as the thickness."""
     settings = {"occluders": "layers", "radius": 0.6, "filter": "none", "size": (96, 72)}
     thin, thick = (lab.render(wall, "ssao", thickness=thickness, **settings) for thickness in (0.02, 2.0))
     x, y, _ = np.moveaxis(world_positions(thin, wall.camera), -1, 0)
@@ -324,7 +324,7 @@ BESIDE_THE_WALL = Camera((1.75, 3, 0), (1.75, 0, 0), up=(0, 0, -1))  # straight 
 
 
 def test_blockers_off_the_screen_count(lab):
-    """The wall beside the picture, of which one view knows nothing."""
+    """The wall beside the picture, which one view does not see."""
     scene = of(box((0, -0.5, -3), (4, 0, 3)), box((-0.5, -0.5, -3), (0, 2.5, 3)), camera=BESIDE_THE_WALL)
     truth = traced(scene, 1.5)
     assert np.nanmean(truth["visibility"]) < 0.97
@@ -382,7 +382,7 @@ def test_more_views_and_finer_ones_come_closer_to_rays(lab):
     assert fine < 0.05
 
 
-def test_what_one_view_sees_in_the_open_is_not_blocked_by_another(lab):
+def test_a_surface_that_a_view_sees_in_the_open_is_not_blocked_by_another_view(lab):
     """The slab before a wall again: no thickness makes a halo, for the views aside look behind it."""
     scene = slab_before_a_wall()
     truth = traced(scene, 1.0)

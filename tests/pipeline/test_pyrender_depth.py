@@ -19,7 +19,7 @@ PYRENDER = """
 import os
 os.environ["PYOPENGL_PLATFORM"] = "egl"
 for limit in ("MESA_GL_VERSION_OVERRIDE", "MESA_GLSL_VERSION_OVERRIDE"):
-    os.environ.pop(limit, None)  # pyrender asks for OpenGL 4.1; the limit is for our own context
+    os.environ.pop(limit, None)  # pyrender needs OpenGL 4.1; the limit is for our own context
 import warnings
 import numpy as np
 with warnings.catch_warnings():
