@@ -59,8 +59,9 @@ class Surface:
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre
         self._near = view.camera.clip_planes(scene.bounds)[0]
-        # the rounding of the rasteriser's float32 transform, in the world whose origin is the scene's centre
-        extent = np.abs(scene.bounds - world.centre).max() + np.linalg.norm(self._eye)
+        # the rounding of the rasteriser's float32 transform, in the shaders' world
+        origin = scene.shader_origin
+        extent = np.abs(scene.bounds - origin).max() + np.linalg.norm(self._world_from_view[:3, 3] - origin)
         self._rounding = 8 * EPSILON * float(extent)
 
     def __len__(self) -> int:
