@@ -41,11 +41,12 @@ SURFACES = _table(
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
 
-# drawn with them if a pass of the module samples them
+# drawn with them if a pass of the module samples them; emission also if a material of the scene has some
 ON_DEMAND = _table(
     Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
     Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),
     Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
+    Buffer("emission", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The light that the surface sends by itself."),
 )
 
 # made from an estimate by the lighting and the composition. Radiance has single precision: half floats end at 65504,

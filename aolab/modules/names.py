@@ -13,7 +13,7 @@ from .parameters import Choice
 OWNERS: dict[str, tuple[str, ...]] = {
     "the view": (
         "ray_from_pixel", "pixel_from_ray", "texel_size", "view_region", "view_from_world", "world_from_view",
-        "clip_from_view",
+        "clip_from_view", "orthographic",
         "clip_from_world", "small_ray_from_pixel",
     ),
     "the lights": (
@@ -22,7 +22,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
     ),
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel",),
-    "the mesh": ("base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided"),
+    "the mesh": ("base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission"),
     "the last frame": ("has_last", "last_from_view", "last_pixel_from_ray"),
 }  # fmt: skip
 

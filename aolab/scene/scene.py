@@ -171,6 +171,11 @@ class Scene:
         """How many triangles are drawn, instances counted."""
         return sum(len(instance.mesh.faces) for instance in self.instances)
 
+    @property
+    def emits(self) -> bool:
+        """Whether a surface sends light by itself."""
+        return any(any(instance.mesh.material.emission) for instance in self.instances)
+
     @cached_property
     def feature_distance(self) -> float | None:
         """The mean distance between neighbouring local maxima (`maths.local_maxima`); None if there is only one."""

@@ -1,4 +1,4 @@
-"""The light that leaves what blocks: of the lamps and of the environment, once."""
+"""The light that leaves what blocks: of the lamps and of the environment, once, and its own."""
 
 import numpy as np
 
@@ -20,7 +20,10 @@ def sent(sample: Sample) -> np.ndarray:
         share = received(setting.world, lamp, positions, normals)
         weight = share * balance(setting, lamp, geometry, share) / np.float32(np.pi)
         light += weight[:, None] * color(lamp)
-    return sample.at_hits((1 - sample.open[b, None]) * sample.hit_albedo * light)
+    light *= sample.hit_albedo
+    if setting.world.emits:
+        light += setting.world.emission(*(part[b] for part in sample.first[1:]))
+    return sample.at_hits((1 - sample.open[b, None]) * light)
 
 
 def skylight(sample: Sample, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -5,17 +5,21 @@
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
+//            surfaceEmission linear RGB radiance that the surface sends by itself (RGBA32F)
 
 #include "lib/space.glsl"
 
 const bool with_uv;
 const bool with_tangent;
 const bool with_motion;
+const bool with_emission;
 const bool has_last;   // there is a last frame to have moved from
 const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's own normals: a solid's back faces away
 
 #include "lib/base_color.glsl"
 
+uniform vec3 emission;              // of each mesh, times its texture
+uniform sampler2D emission_texture;
 uniform sampler2D nearerZ;
 uniform vec4 pixel_from_ray;
 uniform mat4 last_from_view;        // the last camera's view space from this one's
@@ -33,6 +37,7 @@ out vec4 surfaceAlbedo;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
 out vec2 surfaceMotion;
+out vec4 surfaceEmission;
 
 // The derivative of the position by u, of unit length and in the surface.
 vec3 tangentHere(vec3 normal) {
@@ -52,11 +57,12 @@ void main() {
     // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
     // derivatives, which at a horizon reach over to what lies behind the eye
     vec3 faceNormal = cross(dFdx(viewPos), dFdy(viewPos));
-    faceNormal = faceforward(faceNormal, viewPos, faceNormal);
+    faceNormal = faceforward(faceNormal, sightTo(viewPos), faceNormal);
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
     if (with_uv) surfaceUv = uv;
+    if (with_emission) surfaceEmission = vec4(emission * texture(emission_texture, uv).rgb, 1.0);
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
     if (with_motion) {
         vec3 lastPos = (last_from_view * vec4(viewPos, 1.0)).xyz;

@@ -1,4 +1,4 @@
-"""Ctrl-C at any line of a frame leaves the lab whole: later pictures are right, and no texture is given to two frames."""
+"""Ctrl-C at any line of a frame leaves the lab whole: later pictures are right, and no two frames share a texture."""
 
 import sys
 from functools import cache
