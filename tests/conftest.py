@@ -113,7 +113,9 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
     """
     runner = PassRunner(Programs(), Pool())
 
-    def evaluate(include: str, statements: str, x: np.ndarray, **uniforms: Sequence[float]) -> np.ndarray:
+    def evaluate(
+        include: str, statements: str, x: np.ndarray, orthographic: bool = False, **uniforms: Sequence[float]
+    ) -> np.ndarray:
         x = np.asarray(x, np.float32)
         assert x.shape[1:] == (4,)
         declared = "".join(f"uniform vec4 {name};\n" for name in uniforms)
@@ -123,7 +125,8 @@ def glsl(gl: moderngl.Context) -> Callable[..., np.ndarray]:
             f"{statements}\nvalue = result;\n}}\n"
         )
         size = len(x), 1
-        given = Bindings("the test", {"rows": texture.make(size, "RGBA32F", x.tobytes())}, uniforms)
+        rows = {"rows": texture.make(size, "RGBA32F", x.tobytes())}
+        given = Bindings("the test", rows, uniforms, {"orthographic": orthographic})
         made = runner.run(Pass("glsl", shader, {"value": "RGBA32F"}), [given], size)
         return texture.read(made["value"])[0]
 

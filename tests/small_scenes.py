@@ -74,10 +74,8 @@ def boxes(camera: Camera | None = None, lights: tuple[Light, ...] = ()) -> Scene
 def world_positions(frame: Frame, camera: Camera) -> np.ndarray:
     """(H, W, 3): where each pixel's surface is; not finite in the background."""
     view = View(camera, frame.size, np.array([[-1.0] * 3, [1.0] * 3]))
-    scale_x, scale_y, offset_x, offset_y = view.uniforms["ray_from_pixel"]  # type: ignore[misc]
     width, height = frame.size
-    x, y = np.meshgrid(np.arange(width) + 0.5, height - np.arange(height) - 0.5)
-    rays = np.stack([x * scale_x + offset_x, y * scale_y + offset_y, -np.ones_like(x)], axis=-1)
+    pixels = np.stack(np.meshgrid(np.arange(width) + 0.5, height - np.arange(height) - 0.5), axis=-1)
     world_from_view = np.linalg.inv(camera.view_from_world)
     with np.errstate(invalid="ignore"):
-        return (rays * -frame["viewZ"][..., None]) @ world_from_view[:3, :3].T + world_from_view[:3, 3]
+        return view.positions(pixels, frame["viewZ"]) @ world_from_view[:3, :3].T + world_from_view[:3, 3]

@@ -6,8 +6,11 @@ import ctypes
 import os
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
-from typing import Any
+from functools import cache
+from typing import Any, NamedTuple
 
 import moderngl
 
@@ -20,9 +23,22 @@ _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "SwiftShader", "Microso
 _LINUX = {"backend": "egl", "libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
 
 
+class _Binding(NamedTuple):
+    """The EGL handles of a context that is current in a thread; all are 0 where none is."""
+
+    display: int = 0
+    draw: int = 0
+    read: int = 0
+    context: int = 0
+
+
+_NONE = _Binding()
+
+
 @dataclass
 class _State:
     context: moderngl.Context | None = None
+    binding: _Binding = _NONE
     thread: int = 0
     process: int = 0
     loop: asyncio.AbstractEventLoop | None = None  # of that thread, if it runs one
@@ -35,6 +51,7 @@ def get() -> moderngl.Context:
     """The context of this process. Raises `ContextError` from another thread or a forked child, or if GL is missing."""
     if _state.context is None:
         _state.context = _create()
+        _state.binding = _bound()
         _state.thread, _state.process = threading.get_ident(), os.getpid()
         _state.loop = asyncio._get_running_loop()
         atexit.register(release)
@@ -52,6 +69,67 @@ def get() -> moderngl.Context:
     return _state.context
 
 
+@contextmanager
+def current() -> Iterator[None]:
+    """The context of this process is the thread's current one within the block; the former one comes back after it.
+
+    A program may have OpenGL contexts of its own, through moderngl or pyrender: without this, their textures would be
+    taken for ours. Nothing is done where the context is current already. Raises what `get` raises.
+    """
+    former = _bound()
+    context = get()
+    own = _state.binding
+    if former == own and former.context:
+        yield
+        return
+    if own.context:
+        _bind(own)
+        try:
+            yield
+        finally:
+            if former.context:
+                with suppress(ContextError):  # its program may have ended it
+                    _bind(former)
+    else:  # not EGL: Windows, macOS
+        with context:
+            yield
+
+
+@cache
+def _egl() -> ctypes.CDLL | None:
+    """The library whose context is current, with the argument types of the functions below; None without EGL."""
+    if not sys.platform.startswith("linux"):
+        return None
+    try:
+        egl = ctypes.CDLL(_LINUX["libegl"])
+    except OSError:
+        return None
+    for name in ("eglGetCurrentDisplay", "eglGetCurrentContext", "eglGetCurrentSurface"):
+        getattr(egl, name).restype = ctypes.c_void_p
+    egl.eglMakeCurrent.argtypes = [ctypes.c_void_p] * 4
+    return egl
+
+
+def _bound() -> _Binding:
+    """The context that is current in this thread."""
+    egl = _egl()
+    if egl is None:
+        return _NONE
+    draw, read = (egl.eglGetCurrentSurface(which) or 0 for which in (0x3059, 0x305A))  # EGL_DRAW, EGL_READ
+    return _Binding(egl.eglGetCurrentDisplay() or 0, draw, read, egl.eglGetCurrentContext() or 0)
+
+
+def _bind(binding: _Binding) -> None:
+    egl = _egl()
+    assert egl is not None  # a binding was found by it
+    display = binding.display or egl.eglGetCurrentDisplay()  # to unbind, a display is named
+    if not egl.eglMakeCurrent(display, binding.draw, binding.read, binding.context):
+        raise ContextError(
+            f"EGL does not make the context current (error {egl.eglGetError():#x}). A program that calls eglTerminate, "
+            "as pyrender's OffscreenRenderer.delete() does, ends all contexts of the process; use a process for each"
+        )
+
+
 def owner() -> _State | None:
     """The thread of this process's context, and its event loop; None if there is no context."""
     return _state if _state.context is not None and _state.process == os.getpid() else None
@@ -60,8 +138,10 @@ def owner() -> _State | None:
 def release() -> None:
     """Free the context; the next use makes a new one. Everything made with the old one is void."""
     if _state.context is not None and os.getpid() == _state.process and threading.get_ident() == _state.thread:
+        if _state.binding.context and _bound() == _state.binding:
+            _bind(_NONE)  # EGL keeps a context that is current
         _state.context.release()
-        _state.context = None
+        _state.context, _state.binding = None, _NONE
         atexit.unregister(release)
 
 

@@ -22,7 +22,9 @@ PATIENCE = 10.0  # seconds in which the thread of the context must begin the cal
 
 
 def handed(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]:
-    """The function, run in the thread of the context whichever thread calls it. The caller waits for the result.
+    """The function, run in the thread of the context whichever thread calls it, with this context current.
+
+    The caller waits for the result.
 
     Raises `ContextError` if the context's thread runs no event loop, or if the loop is busy for `PATIENCE` seconds.
     """
@@ -31,7 +33,8 @@ def handed(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]
     def call(*args: Arguments.args, **named: Arguments.kwargs) -> Result:
         loop = _other_loop()
         if loop is None:
-            return function(*args, **named)  # `context.get` raises if this is the wrong thread
+            with context.current():  # raises if this is the wrong thread
+                return function(*args, **named)
         future: Future[Result] = Future()
         started = threading.Event()
 
@@ -40,7 +43,8 @@ def handed(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]
                 return  # the caller has given up
             started.set()
             try:
-                future.set_result(function(*args, **named))
+                with context.current():
+                    future.set_result(function(*args, **named))
             except BaseException as error:  # KeyboardInterrupt too: it is the caller's
                 future.set_exception(error)
 

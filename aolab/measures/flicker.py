@@ -10,7 +10,7 @@ from scipy.ndimage import map_coordinates
 from ..errors import ParameterError
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
-from ..scene.view import ray_scale_offset
+from ..scene.view import View
 from .regions import nearness
 
 # A point counts as seen if the frame before shows a surface at its distance, within this share. Half or twice as much
@@ -55,17 +55,16 @@ def _difference(before: Frame, now: Frame, buffer: str) -> np.ndarray:
     """(n,): mean over channels of |now - before|, at the pixels of `now` whose points `before` shows."""
     width, height = now.size
     here, there = (Camera(**frame.info["camera"]) for frame in (now, before))
-    scale_x, scale_y, offset_x, offset_y = ray_scale_offset(here, now.size)
+    here_view, there_view = (View(camera, now.size, np.zeros((2, 3))) for camera in (here, there))  # clips nothing
     rows, columns = np.nonzero(now.mask)
-    depth = -now["viewZ"][rows, columns].astype(np.float64)
-    x, y = (columns + 0.5) * scale_x + offset_x, (height - rows - 0.5) * scale_y + offset_y
-    here_pos = np.stack([x * depth, y * depth, -depth, np.ones_like(depth)])
-    there_pos = there.view_from_world @ np.linalg.inv(here.view_from_world) @ here_pos
+    pixels = np.stack([columns + 0.5, height - rows - 0.5], axis=-1)
+    here_pos = here_view.positions(pixels, now["viewZ"][rows, columns])
+    there_from_here = there.view_from_world @ np.linalg.inv(here.view_from_world)
+    there_pos = here_pos @ there_from_here[:3, :3].T + there_from_here[:3, 3]
 
-    scale_x, scale_y, offset_x, offset_y = ray_scale_offset(there, before.size)
-    distance = np.maximum(-there_pos[2], 1e-20)
-    column = (there_pos[0] / distance - offset_x) / scale_x - 0.5
-    row = height - 0.5 - (there_pos[1] / distance - offset_y) / scale_y
+    x, y = there_view.pixels(there_pos).T
+    column, row = x - 0.5, height - 0.5 - y
+    there_pos, distance = there_pos.T, np.maximum(-there_pos[:, 2], 1e-20)
     # with a still camera each pixel is its own: rounding must not fetch a neighbour across an edge
     column, row = (np.where(np.abs(at - np.rint(at)) < 1e-4, np.rint(at), at) for at in (column, row))
     inside = (there_pos[2] < 0) & (column >= 0) & (row >= 0) & (column <= width - 1) & (row <= height - 1)

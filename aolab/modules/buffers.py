@@ -41,7 +41,7 @@ SURFACES = _table(
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
 
-# drawn with them if a pass of the module samples them
+# drawn with them if a pass of the module samples them; emission also if a material of the scene has some
 ON_DEMAND = _table(
     Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
     Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),

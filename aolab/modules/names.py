@@ -13,7 +13,7 @@ from .parameters import Choice
 OWNERS: dict[str, tuple[str, ...]] = {
     "the view": (
         "ray_from_pixel", "pixel_from_ray", "texel_size", "view_region", "world_origin", "view_from_world",
-        "world_from_view", "clip_from_view", "clip_from_world", "small_ray_from_pixel",
+        "world_from_view", "clip_from_view", "clip_from_world", "small_ray_from_pixel", "orthographic",
     ),
     "the lights": (
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",

@@ -83,7 +83,5 @@ def _in_space(axes, samples: Samples) -> None:
 def _pixels(points: np.ndarray, frame) -> np.ndarray:
     """(..., 2): column and row, from the top left, of view-space points."""
     view = View(frame.camera, frame.size, np.zeros((2, 3)))
-    scale_x, scale_y, offset_x, offset_y = (float(one) for one in view.uniforms["pixel_from_ray"])  # type: ignore[union-attr]
-    depth = np.maximum(-points[..., 2].astype(np.float64), 1e-6)
-    x, y = points[..., 0] / depth * scale_x + offset_x, points[..., 1] / depth * scale_y + offset_y
+    x, y = np.moveaxis(view.pixels(points.astype(np.float64)), -1, 0)
     return np.stack([x, frame.size[1] - y], axis=-1)

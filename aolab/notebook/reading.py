@@ -16,7 +16,7 @@ from ..scene.lights import DirectionalLight
 from ..scene.scene import Scene
 from ..scene.view import View
 from ..truth.lighting import towards_light
-from ..truth.points import pixel_rays
+from ..truth.points import window
 from .glyph import Glyph
 
 HARMONICS = [f"sh{i}" for i in range(4)]
@@ -94,9 +94,9 @@ def inside(pixel: tuple[int, int], size: Size, caller: str = "glyph") -> tuple[i
 def _position(camera: Camera, size: Size, pixel: tuple[int, int], view_z: float) -> np.ndarray:
     """The world-space point (3,) at depth `view_z` on the ray through the centre of `pixel` (column, row)."""
     view = View(camera, size, np.zeros((2, 3)))  # the bounds only determine clip planes, which are not used here
-    ray = pixel_rays(view, np.array([pixel[1] * size[0] + pixel[0]]))[0]
+    position = view.positions(window(view, np.array(pixel[1] * size[0] + pixel[0])), view_z)
     world_from_view = np.linalg.inv(camera.view_from_world)
-    return world_from_view[:3, :3] @ (ray * -view_z) + world_from_view[:3, 3]
+    return world_from_view[:3, :3] @ position + world_from_view[:3, 3]
 
 
 def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:

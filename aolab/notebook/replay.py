@@ -94,7 +94,7 @@ def surfaces(frame: Frame) -> Surfaces:
     wanted = {name: state.small[name] for name in ("viewZ", "viewNormal")}
     wanted |= {name: texture for name, texture in given.textures.items() if name in ("layersZ", "viewsZ")}
     textures = {name: handed(read)(texture) for name, texture in wanted.items()}
-    uniforms = {**state.small_view.uniforms, **given.uniforms}
+    uniforms = {**state.small_view.uniforms, **state.small_view.constants, **given.uniforms}
     return Surfaces(module, kind, state.small_view, textures, uniforms, state.frame.seeds)
 
 
@@ -110,9 +110,10 @@ def replay(seen: Surfaces, pixel: tuple[int, int], seed: int) -> Samples | None:
     ray = np.asarray(seen.uniforms["ray_from_pixel"], F)
     normal = seen.textures["viewNormal"][row, column, :3].astype(F)
     centre = np.array([F(x) + F(0.5), F(y) + F(0.5)], F)
-    surface = np.append((centre * ray[:2] + ray[2:]) * -z, z).astype(F)
+    parallel = bool(seen.uniforms["orthographic"])
+    surface = np.append((centre * ray[:2] + ray[2:]) * (F(1) if parallel else -z), z).astype(F)
     radius, values = F(module.model_dump()["radius"]), module
-    lift = max(F(values.bias) * radius, (radius - surface[2]) * ray[0])
+    lift = max(F(values.bias) * radius, (F(1) if parallel else radius - surface[2]) * ray[0])
     receiver = surface + normal * lift
 
     sample_set = _interleaved_set(x, y)
@@ -146,9 +147,10 @@ def _interleaved_frame(n: np.ndarray, sample_set: int) -> np.ndarray:
     return np.stack([c * tangent + s * bitangent, c * bitangent - s * tangent, n], axis=1).astype(F)
 
 
-def _uv(points: np.ndarray, pixel_from_ray: np.ndarray, texel_size: np.ndarray) -> np.ndarray:
+def _uv(seen: Surfaces, points: np.ndarray, pixel_from_ray: np.ndarray, texel_size: np.ndarray) -> np.ndarray:
     """(..., 2): where points (..., 3) lie in a picture, in [0, 1], v up."""
-    pixel = points[..., :2] / np.maximum(-points[..., 2:], F(1e-20)) * pixel_from_ray[:2] + pixel_from_ray[2:]
+    distance = F(1) if seen.uniforms["orthographic"] else np.maximum(-points[..., 2:], F(1e-20))
+    pixel = points[..., :2] / distance * pixel_from_ray[:2] + pixel_from_ray[2:]
     return (pixel * texel_size).astype(F)
 
 
@@ -164,16 +166,16 @@ def _fetch(texture: np.ndarray, uv: np.ndarray, outside: float) -> np.ndarray:
 
 def _blocked(seen: Surfaces, points: np.ndarray, thickness: np.floating) -> tuple[np.ndarray, np.ndarray]:
     """For points (..., 3): whether each is blocked, (...) bool, and the occluders (..., 3)."""
-    uv = _uv(points, np.asarray(seen.uniforms["pixel_from_ray"], F), np.asarray(seen.uniforms["texel_size"], F))
+    uv = _uv(seen, points, np.asarray(seen.uniforms["pixel_from_ray"], F), np.asarray(seen.uniforms["texel_size"], F))
     with np.errstate(invalid="ignore", over="ignore"):
         if isinstance(seen.kind, Depth):
             z = _fetch(seen.textures["viewZ"], uv, -np.inf)
-            return _within(z - points[..., 2], thickness), _on_ray(points, z)
+            return _within(z - points[..., 2], thickness), _on_ray(seen, points, z)
         if isinstance(seen.kind, Layers):
             layers = _fetch(seen.textures["layersZ"], uv, -np.inf)
             layer = _solid_at(layers, points[..., 2], thickness)
             z = np.take_along_axis(layers, np.maximum(layer, 0)[..., None], -1)[..., 0]
-            return layer >= 0, _on_ray(points, z)
+            return layer >= 0, _on_ray(seen, points, z)
         return _blocked_in_views(seen, points, uv, thickness)
 
 
@@ -181,7 +183,9 @@ def _within(behind: np.ndarray, thickness: np.floating) -> np.ndarray:
     return np.abs(behind - F(0.5) * thickness) < F(0.5) * thickness
 
 
-def _on_ray(points: np.ndarray, z: np.ndarray) -> np.ndarray:
+def _on_ray(seen: Surfaces, points: np.ndarray, z: np.ndarray) -> np.ndarray:
+    if seen.uniforms["orthographic"]:
+        return np.concatenate([points[..., :2], z[..., None]], axis=-1).astype(F)
     return (points * (z / points[..., 2])[..., None]).astype(F)
 
 
@@ -208,21 +212,22 @@ def _blocked_in_views(
     z = _fetch(seen.textures["viewZ"], uv, -np.inf)
     on_screen = (np.abs(uv - F(0.5)) < F(0.5)).all(axis=-1)
     behind = np.where(on_screen, z - points[..., 2], UNKNOWN).astype(F)
-    share = np.where(on_screen, F(1), F(1) - F(2) * F(uniforms["view_pixel_width"])).astype(F)
+    margin = np.where(on_screen, F(0), F(2) * F(uniforms["view_pixel_width"])).astype(F)
     inside_solid = np.zeros(behind.shape, bool)
-    nearest = _on_ray(points, z)
+    nearest = _on_ray(seen, points, z)
     for k, (there_matrix, here_matrix) in enumerate(zip(there_from_here, here_from_there, strict=True)):
         there = (points @ there_matrix[:3, :3].T + there_matrix[:3, 3]).astype(F)
-        in_tile = _uv(there, tile_from_ray, np.ones(2, F))
+        in_tile = _uv(seen, there, tile_from_ray, np.ones(2, F))
         in_picture = np.abs(in_tile).max(axis=-1) < 1
         tile = np.array((2 * (k & 1) + 1, 2 * (k >> 1) + 1), F)
         depths = _fetch(seen.textures["viewsZ"], ((in_tile + tile) * tile_half).astype(F), -np.inf)
         if kind.view_layers > 1:
             inside_solid |= in_picture & (_solid_at(depths, there[..., 2], thickness) >= 0)
             depths = depths[..., 0]
-        here = np.where(in_picture, depths - share * there[..., 2], UNKNOWN).astype(F)
+        distance = F(1) if uniforms["orthographic"] else -there[..., 2]
+        here = np.where(in_picture, depths - there[..., 2] - margin * distance, UNKNOWN).astype(F)
         closer = here < behind
         behind = np.where(closer, here, behind)
-        back = _on_ray(there, depths) @ here_matrix[:3, :3].T + here_matrix[:3, 3]
+        back = _on_ray(seen, there, depths) @ here_matrix[:3, :3].T + here_matrix[:3, 3]
         nearest = np.where(closer[..., None], back, nearest).astype(F)
     return (inside_solid & (behind > 0) if kind.view_layers > 1 else _within(behind, thickness)), nearest

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..pipeline.frame import Frame
 from ..scene.view import View
-from ..truth.points import pixel_rays
+from ..truth.points import window
 
 LUMINANCE = np.array((0.2126, 0.7152, 0.0722))  # of linear sRGB (ITU-R BT.709)
 
@@ -35,9 +35,9 @@ def world_positions(frame: Frame) -> np.ndarray:
     view = view_of(frame)
     world_from_view = np.linalg.inv(view.camera.view_from_world)
     width, height = view.size
-    rays = pixel_rays(view, np.arange(width * height)).reshape(height, width, 3)
-    depth = np.where(frame.mask, -frame["viewZ"], 0)
-    return rays * depth[..., None] @ world_from_view[:3, :3].T + world_from_view[:3, 3]
+    pixels = window(view, np.arange(width * height)).reshape(height, width, 2)
+    positions = view.positions(pixels, np.where(frame.mask, frame["viewZ"], 0))
+    return positions @ world_from_view[:3, :3].T + world_from_view[:3, 3]
 
 
 def pixel_at(frame: Frame, point: Sequence[float]) -> tuple[int, int]:

@@ -12,7 +12,8 @@ from .tone import shown, srgb
 
 SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share")  # in [0, 1], shown in grey
 RADIANCE = (  # linear RGB
-    "direct", "ambient", "indirect", "radiance", "irradiance", "bounce", "sender", "open_light", "all_light",
+    "direct", "ambient", "indirect", "emission", "radiance", "irradiance", "bounce", "sender",
+    "open_light", "all_light",
 )  # fmt: skip
 DIRECTIONS = ("viewNormal", "bent_normal", "tangent")  # components in [-1, 1]
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first

@@ -39,7 +39,7 @@ def steps(frame: FrameContext, passes: Iterable[Pass], given: Sequence[Bindings]
     Full-screen passes have the size of `view`, by default the frame's.
     """
     view, made, fillers = view or frame.view, {}, {}
-    seen = Bindings("the view", uniforms=view.uniforms)
+    seen = Bindings("the view", uniforms=view.uniforms, constants=view.constants)
     for step in passes:
         for name in step.outputs:
             if name in fillers:

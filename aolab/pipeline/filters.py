@@ -77,7 +77,7 @@ def _common(filter: Filter, surfaces: Buffers, view: View) -> list[Bindings]:
     numbers = filter.numbers()
     return [
         Bindings("the surfaces", surfaces),
-        Bindings("the view", uniforms=view.uniforms),
+        Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings(filter.label(), uniforms=numbers, constants=numbers),
     ]
 

@@ -23,8 +23,7 @@ MESH_UNIFORMS: dict[str, object] = {
     "single_sided": False,
     "emission": (0.0, 0.0, 0.0),
 }
-# the units of each mesh's textures
-MESH_UNITS = {"base_texture": 0, "emission_texture": 1}
+MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1}  # of each mesh in turn, by their units
 
 
 def kinds_of(scene: Scene) -> dict[str, Constant]:
@@ -58,7 +57,7 @@ class Geometry:
         self._white: moderngl.Texture | None = None
 
     def draw(self, scene: Scene, program: Program) -> None:
-        """Draw every instance; sets the program's `MESH_UNIFORMS`, and puts textures on `MESH_UNITS`."""
+        """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`."""
         for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
             gpu = self._place(mesh, placements, scene.shader_origin)
             self._use_material(mesh, number, program)
@@ -115,26 +114,21 @@ class Geometry:
             "single_sided": not material.double_sided,
             "emission": material.emission,
         }
-        texture = self._white_texture()
-        if material.texture is not None:
-            cutoff = material.alpha_cutoff
-            # the texture's own alpha at which the material cuts
-            texture = self._texture(material.texture, None if cutoff is None else cutoff / max(material.alpha, 1e-6))
+        cutoff = material.alpha_cutoff
+        if cutoff is not None:
+            cutoff /= max(material.alpha, 1e-6)  # the texture's own alpha at which the material cuts
+        textures = [self._texture(material.texture, cutoff), self._texture(material.emission_texture, None)]
         for name, value in values.items():
             if name in program.uniforms:  # a compiler may find that an edited shader does not need it
                 program.uniforms[name].value = value
-        texture.use(MESH_UNITS["base_texture"])
-        if "emission_texture" in program.samplers:
-            glowing = material.emission_texture
-            emission = self._white_texture() if glowing is None else self._texture(glowing, None)
-            emission.use(MESH_UNITS["emission_texture"])
+        for unit, texture in enumerate(textures):  # after all uploads, which use unit 0
+            texture.use(unit)
 
-    def _white_texture(self) -> moderngl.Texture:
-        if self._white is None:
-            self._white = context.get().texture((1, 1), 4, b"\xff" * 4)
-        return self._white
-
-    def _texture(self, texture: Texture, cutoff: float | None) -> moderngl.Texture:
+    def _texture(self, texture: Texture | None, cutoff: float | None) -> moderngl.Texture:
+        """The texture; None is white."""
+        if texture is None:
+            self._white = self._white or context.get().texture((1, 1), 4, b"\xff" * 4)
+            return self._white
         known = self._textures.setdefault(texture, {})
         if cutoff not in known:
             known[cutoff] = upload(texture, cutoff)

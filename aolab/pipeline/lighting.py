@@ -106,11 +106,13 @@ def compose(
 ) -> Buffers:
     """`radiance` (the sum, over the environment) and `image` (tone mapped sRGB)."""
     summands = {name: buffers[name] for name in ("viewZ", "direct", "ambient")}
+    optional = {name: buffers.get(name, buffers["ambient"]) for name in ("indirect", "emission")}
     given = [
-        Bindings("the frame", {**summands, "indirect": buffers.get("indirect", buffers["ambient"])}),
+        Bindings("the frame", {**summands, **optional}),
         Bindings("the environment", {"environment": environment}),
-        Bindings("the view", uniforms=view.uniforms),
+        Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the display", uniforms={"exposure": display.exposure}),
     ]
-    constants = {"has_indirect": "indirect" in buffers, "filmic_tone": display.tone_map == "filmic"}
+    has = {f"has_{name}": name in buffers for name in optional}
+    constants = {**has, "filmic_tone": display.tone_map == "filmic"}
     return runner.run(replace(_COMPOSE, constants=constants), given, view.size)

@@ -8,10 +8,11 @@ import moderngl
 from ..gl import context, raw
 from ..gl.bindings import Bindings, joined
 from ..gl.texture import Depth, attach
+from ..modules.buffers import ON_DEMAND
 from ..modules.passes import GeometryPass, Pass
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
-from .geometry import MESH_UNIFORMS, MESH_UNITS, Geometry, kinds_of
+from .geometry import MESH_TEXTURES, MESH_UNIFORMS, Geometry, kinds_of
 from .pass_runner import Buffers, PassRunner
 from .surfaces import G_BUFFER, g_buffer
 
@@ -46,7 +47,13 @@ class Rasterizer:
 
     def surfaces(self, views: Sequence[View], name: str = "g_buffer", formats: Mapping[str, str] = G_BUFFER) -> Buffers:
         """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`."""
-        return self.triangles(g_buffer(name, formats, atlas=len(views) > 1), views)
+        return self.triangles(g_buffer(name, self._with_emission(formats), atlas=len(views) > 1), views)
+
+    def _with_emission(self, formats: Mapping[str, str]) -> Mapping[str, str]:
+        """The formats, and that of the emission if the scene has some and the surfaces' light is wanted."""
+        if "albedo" in formats and self.scene.emits:
+            return {**formats, "emission": ON_DEMAND["emission"].format}
+        return formats
 
     def peeled(
         self,
@@ -70,7 +77,7 @@ class Rasterizer:
         """The G-buffer of what lies behind `nearer` (viewZ), or None where nothing does. Normals are the mesh's own."""
         drawn = context.get().query(samples=True)
         with drawn:
-            step = g_buffer("peel", formats, peel=True)
+            step = g_buffer("peel", self._with_emission(formats), peel=True)
             buffers = self.triangles(step, views, [Bindings("the nearer layer", {"nearerZ": nearer})])
         if drawn.samples == 0:
             self.runner.give_back(buffers)
@@ -98,7 +105,7 @@ class Rasterizer:
         # of each mesh in turn, by Geometry.draw
         mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
         own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
-        views = [Bindings("the view", uniforms=viewpoint.uniforms) for viewpoint in viewpoints]
+        views = [Bindings("the view", uniforms=one.uniforms, constants=one.constants) for one in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
         program = runner.program(step, given[0], step.vertex)
         tested = step.combine == "nearest"
@@ -106,7 +113,7 @@ class Rasterizer:
         targets = runner.targets(step, size)
         # a depth texture alone is not kept in the pool, which would keep it for good
         framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
-        runner.bind(program, given[0].textures, step.reads, MESH_UNITS)
+        runner.bind(program, given[0].textures, step.reads, MESH_TEXTURES)
         with runner.timer.measure(step.name):
             _clear(runner, framebuffer, step, targets, size)
             gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)

@@ -15,12 +15,14 @@ from .lighting import Lights
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
 
-_SENDER = Pass("sender", "pipeline/sender.frag", {"sender": LIT["sender"].format})
+
+def _sender(emits: bool) -> Pass:
+    return Pass("sender", "pipeline/sender.frag", {"sender": LIT["sender"].format}, {"has_emission": emits})
 
 
 def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers, SurfaceState]:
-    """`sender`, direct + ambient light of the surfaces that the camera sees; and the state with the light of hidden
-    surfaces bound.
+    """`sender`, direct + ambient light + emission of the surfaces that the camera sees; and the state with the light
+    of hidden surfaces bound.
     """
     frame, occluders = state.frame, state.occluders
     runner, view = frame.runner, frame.view
@@ -31,7 +33,9 @@ def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers,
     given = Bindings("the passes before the samples", once)
     sent = {hidden.sender: _hidden_sender(frame, hidden, lights, given) for hidden in occluders.hidden}
     bound = replace(occluders.bindings, textures={**occluders.bindings.textures, **sent})
-    sender = runner.run(_SENDER, [Bindings("the lighting", lit)], view.size)
+    emission = {"emission": state.large.get("emission", lit["ambient"])}
+    known = [Bindings("the lighting", lit), Bindings("the surfaces", emission)]
+    sender = runner.run(_sender("emission" in state.large), known, view.size)
     return sender, replace(state, occluders=replace(occluders, bindings=bound))
 
 
@@ -42,12 +46,13 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
     lights are left out. `given` are the textures that the estimate makes before its samples.
     """
     runner, size = frame.runner, hidden.views[0].sheet
-    passes = _passes(frame.module)
+    passes = _passes(frame.module, "emission" in hidden.surfaces)
+    surfaces = {"emission": hidden.surfaces["albedo"], **hidden.surfaces}  # samplers must be bound
     targets = [runner.targets(step, size) for step in passes]
     for view in hidden.views:
         known = [
-            Bindings("the surfaces", hidden.surfaces),
-            Bindings("the view", uniforms=view.uniforms),
+            Bindings("the surfaces", surfaces),
+            Bindings("the view", uniforms=view.uniforms, constants=view.constants),
             hidden.occluders,
             given,
             frame.parameters,
@@ -64,7 +69,7 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
     return sender
 
 
-def _passes(module: Module) -> Sequence[Pass]:
+def _passes(module: Module, emits: bool) -> Sequence[Pass]:
     """The module's estimate, direct light, and the module's own ambient light; then the sum."""
     ambient = [step for step in module.lighting() if isinstance(step, Pass) and "ambient" in step.outputs]
-    return [*module.estimate().passes, DIRECT, *ambient, _SENDER]
+    return [*module.estimate().passes, DIRECT, *ambient, _sender(emits)]

@@ -48,14 +48,14 @@ class ShadowMaps:
 def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.ndarray]]:
     """(view_from_world, clip_from_view) of each tile that the light needs: one, or six for a point light.
 
-    The world is that of the shaders: the scene's centre is 0.
+    The world is that of the shaders, whose origin is `Scene.shader_origin`.
     """
-    radius = scene.radius * 1.001
+    centre, radius = scene.centre - scene.shader_origin, scene.radius * 1.001
     if isinstance(light, DirectionalLight):
         direction = np.asarray(light.direction) / np.linalg.norm(light.direction)
-        return [(look_along(-direction * radius, direction), orthographic(radius, radius, 0, 2 * radius))]
+        return [(look_along(centre - direction * radius, direction), orthographic(radius, radius, 0, 2 * radius))]
     position = np.asarray(light.position, float) - scene.shader_origin
-    far = float(np.linalg.norm(position)) + radius
+    far = float(np.linalg.norm(position - centre)) + radius
     near = far * 1e-3
     if isinstance(light, SpotLight):
         tan = float(np.tan(np.radians(light.outer + 1)))

@@ -49,7 +49,7 @@ def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buf
     rays = {"small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
     bindings = [
         Bindings("the surfaces", buffers),
-        Bindings("the view", uniforms=view.uniforms),
+        Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the small view", uniforms=rays),
     ]
     result = runner.run(_SHRINK, bindings, small.size)

@@ -84,9 +84,8 @@ class Camera:
         corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
         distances = -(corners @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
         far = self.far or max(float(distances.max()) * 1.01, 1e-6)
-        near = self.near or max(
-            float(distances.min()) * 0.99, far * 1e-3
-        )  # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m
+        # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m, and parallel rays lose nothing
+        near = self.near or max(float(distances.min()) * 0.99, far * (1e-3 if self.ortho is None else 1e-6))
         return near, max(far, near * 1.001)
 
     def clip_from_view(self, size: tuple[int, int], bounds: np.ndarray) -> np.ndarray:
@@ -98,8 +97,8 @@ class Camera:
     def orbited(self, azimuth: float = 0.0, elevation: float = 0.0, zoom: float = 1.0) -> "Camera":
         """The camera with its eye turned around the target: `azimuth` degrees to the right, `elevation` degrees up.
 
-        `zoom` divides the distance. The eye stays at least 1 degree away from the poles of `up`. Raises `SceneError`
-        if `zoom` is not above 0.
+        `zoom` divides the distance, and the height of an orthographic picture. The eye stays at least 1 degree away
+        from the poles of `up`. Raises `SceneError` if `zoom` is not above 0.
         """
         if not 0 < zoom < np.inf:
             raise SceneError(f"camera: zoom = {zoom} is not a number above 0")
@@ -114,7 +113,7 @@ class Camera:
         limit = np.radians(89.0)
         height = np.clip(height + np.radians(elevation), -limit, limit)
         eye = target + (np.cos(height) * ahead + np.sin(height) * up) * distance / zoom
-        return replace(self, eye=tuple(eye.tolist()))
+        return replace(self, eye=tuple(eye.tolist()), ortho=None if self.ortho is None else self.ortho / zoom)
 
     @classmethod
     def framing(cls, bounds: np.ndarray, direction: Vec3 = (0.5, 0.35, 1.0), fov: float = 35.0) -> "Camera":

@@ -12,6 +12,7 @@ from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
 
 Wrap = Literal["repeat", "mirror", "clamp"]
+CHUNK = 256  # triangles, whose distance to a point is taken together
 CREASE_DEGREES = 40.0  # faces that meet at less than this share a normal; 30-60 is the usual range of modelling tools
 
 
@@ -166,6 +167,17 @@ class Mesh:
     def bounds(self) -> np.ndarray:
         """(2, 3) float64: the least and greatest local coordinates."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)], np.float64)
+
+    @cached_property
+    def chunk_bounds(self) -> np.ndarray:
+        """(chunks, 2, 3) float64: the bounds of each `CHUNK` triangles, in their order."""
+        corners = self.vertices[self.faces].reshape(-1, 3).astype(np.float64)
+        starts = np.arange(0, len(corners), 3 * CHUNK)
+        return np.stack([np.minimum.reduceat(corners, starts), np.maximum.reduceat(corners, starts)], axis=1)
+
+    def chunk(self, number: int) -> np.ndarray:
+        """(n, 3): the triangles of a chunk."""
+        return self.faces[number * CHUNK : (number + 1) * CHUNK]
 
     @cached_property
     def welded(self) -> tuple[np.ndarray, np.ndarray]:

@@ -65,11 +65,11 @@ def sun_and_sky() -> tuple[Environment, tuple[Light, ...]]:
 
 @dataclass(frozen=True, eq=False)
 class Scene:
-    """Placed meshes, lights, an environment and a camera. A missing camera frames the scene.
+    """Placed meshes, lights, an environment and a camera.
 
-    Without lights and environment there is a default sky and sun.
-
-    `source` is what `aolab.load` was given, where that was a name or a file; it makes an image reproducible.
+    A missing camera frames the scene; without lights and environment there is a default sky and sun. `source` is the
+    name or file that `aolab.load` was given, if it was one: it makes an image reproducible. Raises `SceneError` for a
+    scene that is empty, or too large or too small for its coordinates.
     """
 
     instances: tuple[Instance, ...]
@@ -170,6 +170,11 @@ class Scene:
     def triangles(self) -> int:
         """How many triangles are drawn, instances counted."""
         return sum(len(instance.mesh.faces) for instance in self.instances)
+
+    @property
+    def emits(self) -> bool:
+        """Whether a surface sends light by itself."""
+        return any(any(instance.mesh.material.emission) for instance in self.instances)
 
     @cached_property
     def feature_distance(self) -> float | None:

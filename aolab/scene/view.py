@@ -88,6 +88,38 @@ class View:
             "clip_from_view": matrix_bytes(self.camera.clip_from_view(self.size, self.bounds)),
         }
 
+    def positions(self, pixel: np.ndarray, view_z: np.ndarray | float) -> np.ndarray:
+        """(..., 3) float64: view-space points at depths `view_z` (...), seen at `pixel` (..., 2), window coordinates.
+
+        The twin of `viewPosAt` in glsl/lib/space.glsl.
+        """
+        scale, offset = np.reshape(ray_scale_offset(self.camera, self.size), (2, 2))
+        view_z = np.broadcast_to(np.asarray(view_z, np.float64), pixel.shape[:-1])
+        distance = 1.0 if self.camera.ortho is not None else -view_z[..., None]
+        return np.concatenate([(pixel * scale + offset) * distance, view_z[..., None]], axis=-1)
+
+    def pixels(self, position: np.ndarray) -> np.ndarray:
+        """(..., 2) float64: the window coordinates of view-space points (..., 3); `pixelAt` in glsl/lib/space.glsl."""
+        scale, offset = np.reshape(ray_scale_offset(self.camera, self.size), (2, 2))
+        distance = 1.0 if self.camera.ortho is not None else np.maximum(-position[..., 2:], 1e-20)
+        return (position[..., :2] / distance - offset) / scale
+
+    def sights(self, pixel: np.ndarray) -> np.ndarray:
+        """(..., 3) float64: view-space directions, z = -1, in which `pixel` (..., 2), window coordinates, is seen."""
+        if self.camera.ortho is not None:
+            return np.broadcast_to((0.0, 0.0, -1.0), (*pixel.shape[:-1], 3))
+        return self.positions(pixel, -1.0)
+
+    def pixel_width(self, view_z: np.ndarray) -> np.ndarray:
+        """(...) float64: the width of a pixel in scene units, at depths `view_z` (...)."""
+        width = 2 * self.camera.half_extent(self.size)[1] / self.size[1]
+        return np.full(np.shape(view_z), width) if self.camera.ortho is not None else -view_z * width
+
+    @property
+    def constants(self) -> dict[str, bool]:
+        """Constants by name; see glsl/lib/space.glsl."""
+        return {"orthographic": self.camera.ortho is not None}
+
     @cached_property
     def sh_from_world(self) -> np.ndarray:
         """(16, 16): turns spherical harmonics of world space into those of view space."""
@@ -123,6 +155,11 @@ class Projection:
     def region(self) -> Region:
         """The pixels of the texture that this projection covers."""
         return *self.origin, *self.size
+
+    @property
+    def constants(self) -> dict[str, bool]:
+        """Constants by name: shaders that read rays take it for a pinhole."""
+        return {"orthographic": False}
 
     @cached_property
     def uniforms(self) -> dict[str, object]:

@@ -42,9 +42,12 @@ class Description:
 def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: int) -> Description:
     """The worker's input. Emitters are the scene's lights, in order, and then its environment.
 
-    Raises `SceneError` for parts without counterpart in Mitsuba: a light without shadow, vertex colours × texture.
+    Raises `SceneError` for parts without counterpart in Mitsuba: a light without shadow, vertex colours × texture,
+    emission.
     """
     assert scene.environment is not None  # Scene fills it in
+    if scene.emits:
+        raise SceneError("a material of the scene has an emission: engine = 'mitsuba' draws none; leave it out")
     centre, scale = scene.bounds.mean(axis=0), RADIUS / scene.radius
     cut_out = any(instance.mesh.material.alpha_cutoff is not None for instance in scene.instances)
     made = Description()
@@ -74,7 +77,11 @@ def _camera(view: View, bounds: np.ndarray, centre: np.ndarray, scale: float) ->
         "origin": ((np.asarray(camera.eye) - centre) * scale).tolist(),
         "target": ((np.asarray(camera.target) - centre) * scale).tolist(),
         "up": camera.up,
-        "fov": 2 * np.degrees(np.arctan(camera.half_extent(view.size)[1])).item(),
+        **(
+            {"fov": 2 * np.degrees(np.arctan(camera.half_extent(view.size)[1])).item()}
+            if camera.ortho is None
+            else {"half_width": camera.half_extent(view.size)[0] * scale}
+        ),
         "near_clip": near * scale,
         "far_clip": far * scale,
     }

@@ -47,9 +47,14 @@ def _sensor(camera: dict[str, Any], width: int, height: int) -> Any:
         "component_format": "float32",
         "rfilter": {"type": "box"},  # a pixel is the mean over its own area alone
     }
-    placed = {"to_world": mi.ScalarTransform4f().look_at(**pose), "fov_axis": "y"}
+    to_world = mi.ScalarTransform4f().look_at(**pose)
+    if "half_width" in camera:  # parallel rays: the picture is two units wide before this transform
+        half = camera.pop("half_width")
+        lens = {"type": "orthographic", "to_world": to_world @ mi.ScalarTransform4f().scale((half, half, 1))}
+    else:
+        lens = {"type": "perspective", "to_world": to_world, "fov_axis": "y"}
     # measured on `boxes` at 256 samples: a fifth of the noise of independent samples, in 1.8 times the time
-    return mi.load_dict({"type": "perspective", **placed, **camera, "film": film, "sampler": {"type": "multijitter"}})
+    return mi.load_dict({**lens, **camera, "film": film, "sampler": {"type": "multijitter"}})
 
 
 def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:

@@ -5,7 +5,7 @@ import numpy as np
 from ..pictures.tone import shown as shown
 from ..scene.environment import Environment
 from ..scene.view import View
-from .points import pixel_rays
+from .points import window
 from .sky import environment_radiance
 
 
@@ -19,7 +19,7 @@ def spread(values: np.ndarray, pixel: np.ndarray, view: View, background: float)
 
 def over_environment(radiance: np.ndarray, mask: np.ndarray, environment: Environment, view: View) -> np.ndarray:
     """(H, W, 3): `radiance`, with the environment where `mask` is False."""
-    behind = pixel_rays(view, np.flatnonzero(~mask)) @ view.camera.view_from_world[:3, :3]
+    behind = view.sights(window(view, np.flatnonzero(~mask))) @ view.camera.view_from_world[:3, :3]
     result = radiance.copy()
     result[~mask] = environment_radiance(environment, behind)
     return result

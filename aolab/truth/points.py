@@ -6,7 +6,7 @@ import numpy as np
 
 from ..pipeline.frame import Frame
 from ..scene.scene import Scene
-from ..scene.view import View, ray_scale_offset
+from ..scene.view import View
 from .world import World
 
 # The G-buffer's normals are half floats: three components, each rounded by up to 2^-12. A normal this close to the
@@ -59,8 +59,9 @@ class Surface:
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre
         self._near = view.camera.clip_planes(scene.bounds)[0]
-        # the rounding of the rasteriser's float32 transform, in the world whose origin is the scene's centre
-        extent = np.abs(scene.bounds - world.centre).max() + np.linalg.norm(self._eye)
+        # the rounding of the rasteriser's float32 transform, in the shaders' world
+        origin = scene.shader_origin
+        extent = np.abs(scene.bounds - origin).max() + np.linalg.norm(self._world_from_view[:3, 3] - origin)
         self._rounding = 8 * EPSILON * float(extent)
 
     def __len__(self) -> int:
@@ -94,9 +95,9 @@ class Surface:
 
         The rays pass `offset` (x, y), in pixels, beside the pixels' centres.
         """
-        directions = pixel_rays(self.view, pixel, offset) @ self._world_from_view[:3, :3].T
-        first = (self._eye + self._near * directions).astype(np.float32)
-        directions = _unit(directions)
+        to_world, at = self._world_from_view[:3, :3].T, window(self.view, pixel, offset)
+        first = (self._eye + self.view.positions(at, -self._near) @ to_world).astype(np.float32)
+        directions = _unit(self.view.sights(at) @ to_world)
         hits = self._world.first_hit(first, directions.astype(np.float32), np.inf)
         normal = self._world.normals[hits.triangle].astype(np.float64)
         normal *= -np.sign((normal * directions).sum(axis=1, keepdims=True))
@@ -110,21 +111,18 @@ class Surface:
 
     def _shown(self, pixel: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """The G-buffer's positions (m, 3), and the width (m,) of a pixel there, scene units."""
-        depth = -self._view_z.reshape(-1)[pixel].astype(np.float64)
-        position = self._eye + pixel_rays(self.view, pixel) @ self._world_from_view[:3, :3].T * depth[:, None]
-        return position, depth * 2 * self.view.camera.half_extent(self.view.size)[1] / self.view.size[1]
+        view_z = self._view_z.reshape(-1)[pixel].astype(np.float64)
+        position = self.view.positions(window(self.view, pixel), view_z)
+        return self._eye + position @ self._world_from_view[:3, :3].T, self.view.pixel_width(view_z)
 
 
-def pixel_rays(view: View, pixel: np.ndarray, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
-    """(n, 3) float64: view-space rays, z = -1, through the centres of pixels, row-major from the top left.
+def window(view: View, pixel: np.ndarray, offset: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
+    """(n, 2) float64: window coordinates of the centres of pixels, row-major from the top left.
 
     `offset` (x to the right, y up), in pixels, moves them off the centres.
     """
     width, height = view.size
-    scale_x, scale_y, offset_x, offset_y = ray_scale_offset(view.camera, view.size)
-    x = (pixel % width + 0.5 + offset[0]) * scale_x + offset_x
-    y = (height - 0.5 - pixel // width + offset[1]) * scale_y + offset_y
-    return np.stack([x, y, np.full_like(x, -1)], axis=-1)
+    return np.stack([pixel % width + 0.5 + offset[0], height - 0.5 - pixel // width + offset[1]], axis=-1)
 
 
 def _unit(vectors: np.ndarray) -> np.ndarray:

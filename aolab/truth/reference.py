@@ -125,6 +125,8 @@ def _pictures(traced: dict[str, np.ndarray], surface: Surface, shot: Shot) -> di
     }
     if "radiance" in full:
         assert shot.scene.environment is not None  # Scene fills it in
+        if "emission" in shot.surfaces.buffers:
+            full["radiance"] = full["radiance"] + shot.surfaces["emission"]
         full["radiance"] = over_environment(full["radiance"], shot.surfaces.mask, shot.scene.environment, shot.view)
         full["image"] = shown(full["radiance"])
     return full

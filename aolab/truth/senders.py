@@ -1,4 +1,4 @@
-"""The light that blocking surfaces send: the light of the lamps and of the environment, reflected once."""
+"""The light that blocking surfaces send: of the lamps and of the environment, reflected once, and their own."""
 
 import numpy as np
 
@@ -20,7 +20,10 @@ def sent(sample: Sample) -> np.ndarray:
         share = received(setting.world, lamp, positions, normals)
         weight = share * balance(setting, lamp, geometry, share) / np.float32(np.pi)
         light += weight[:, None] * color(lamp)
-    return sample.at_hits((1 - sample.open[b, None]) * sample.hit_albedo * light)
+    light *= sample.hit_albedo
+    if setting.world.emits:
+        light += setting.world.emission(*(part[b] for part in sample.first[1:]))
+    return sample.at_hits((1 - sample.open[b, None]) * light)
 
 
 def skylight(sample: Sample, positions: np.ndarray, normals: np.ndarray) -> np.ndarray:

@@ -16,7 +16,7 @@ from ..scene.view import Size, View
 from ..version import __version__
 from . import cache as disk
 
-SURFACES = ("viewZ", "viewNormal", "albedo")
+SURFACES = ("viewZ", "viewNormal", "albedo", "emission")
 
 
 @dataclass(frozen=True)
@@ -74,6 +74,6 @@ class Shot:
             "cached": not missing,
         }
         milliseconds = (perf_counter() - self.begun) * 1e3
-        surfaces = {one: self.surfaces[one] for one in SURFACES}
+        surfaces = {one: self.surfaces[one] for one in SURFACES if one in self.surfaces.buffers}
         timings = {"reference": milliseconds}
         return Frame({**surfaces, **arrays}, timings, info, milliseconds, list(self.surfaces.notes), scene=self.scene)

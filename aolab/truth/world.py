@@ -67,6 +67,15 @@ class World:
         """(n, 3) float32, linear: the diffuse albedo at points of triangles."""
         return self._surface.rgba(triangle, u, v)[:, :3].clip(0, 1)
 
+    @property
+    def emits(self) -> bool:
+        """Whether a surface sends light by itself."""
+        return self._surface.emits
+
+    def emission(self, triangle: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(n, 3) float32, linear: the radiance that surfaces send by themselves at points of triangles."""
+        return self._surface.emission(triangle, u, v)
+
     def hit_surface(
         self, origins: np.ndarray, directions: np.ndarray, distance: np.ndarray, triangle: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -92,11 +101,16 @@ class _Surfaces:
         else:  # (t, 1, 4)
             self._colors = np.repeat(np.stack(base), counts, axis=0)[:, None]
 
-        textures = {m.material.texture: None for m in meshes if m.material.texture is not None and m.uv is not None}
-        self._textures: list[Texture] = list(textures)
+        of_meshes = [[m.material.texture for m in meshes], [m.material.emission_texture for m in meshes]]
+        self._textures = list(dict.fromkeys(texture for textures in of_meshes for texture in textures if texture))
         numbers = {texture: i for i, texture in enumerate(self._textures)}
-        of_mesh = [numbers.get(m.material.texture, -1) if m.material.texture else -1 for m in meshes]
-        self._texture = np.repeat(np.array(of_mesh, np.int32), counts)
+        self._texture, self._glow = (  # (t,): the number of the texture, -1 where there is none
+            np.repeat(np.array([numbers[texture] if texture else -1 for texture in textures], np.int32), counts)
+            for textures in of_meshes
+        )
+        emission = np.array([m.material.emission for m in meshes], np.float32)
+        self.emits = bool(emission.any())
+        self._emission = np.repeat(emission, counts, axis=0) if self.emits else emission
         self._uv = None
         if self._textures:
             self._uv = np.concatenate([
@@ -118,18 +132,30 @@ class _Surfaces:
         ]
 
     def rgba(self, triangle: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
-        """(n, 4) float32, linear. Textures are bilinear at their finest level, repeated."""
+        """(n, 4) float32, linear: base colour and alpha."""
         weights = np.stack([1 - u - v, u, v], axis=1)[..., None]
         color = self._colors[triangle]
         color = color[:, 0].copy() if color.shape[1] == 1 else (color * weights).sum(axis=1)
-        if self._uv is not None:
-            which = self._texture[triangle]
-            for i in np.unique(which[which >= 0]):
-                here = np.flatnonzero(which == i)
-                uv = (self._uv[triangle[here]] * weights[here]).sum(axis=1)
-                u, v = _wrapped(self._textures[i], uv[:, 0], 1 - uv[:, 1])
-                color[here] *= bilinear(self._linear[i], u, v, repeat_rows=True)
+        self._multiply(color, self._texture, triangle, weights)
         return color
+
+    def emission(self, triangle: np.ndarray, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+        """(n, 3) float32, linear."""
+        color = np.ones((len(triangle), 4), np.float32)
+        color[:, :3] = self._emission[triangle]
+        self._multiply(color, self._glow, triangle, np.stack([1 - u - v, u, v], axis=1)[..., None])
+        return color[:, :3]
+
+    def _multiply(self, color: np.ndarray, textures: np.ndarray, triangle: np.ndarray, weights: np.ndarray) -> None:
+        """Multiply `color` (n, 4) by the textures (t,) of the triangles, bilinear at their finest level."""
+        if self._uv is None:
+            return
+        which = textures[triangle]
+        for i in np.unique(which[which >= 0]):
+            here = np.flatnonzero(which == i)
+            uv = (self._uv[triangle[here]] * weights[here]).sum(axis=1)
+            u, v = _wrapped(self._textures[i], uv[:, 0], 1 - uv[:, 1])
+            color[here] *= bilinear(self._linear[i], u, v, repeat_rows=True)
 
     def in_hole(self, hits: Hits) -> np.ndarray:
         """(n,) bool: the hits where the surface is cut out.

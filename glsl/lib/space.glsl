@@ -1,16 +1,29 @@
 // Transformations between pixels and view space.
 // View space is right-handed and looks along -z. The ray through a pixel is (ray.xy, -1); the ray times -viewZ is the
 // surface point. `rayFromPixel`: scale (xy) and offset (zw) of ray.xy = pixel * scale + offset; `pixelFromRay`: those
-// of the inverse. Pixels are window coordinates: centres at .5, y up.
+// of the inverse. Pixels are window coordinates: centres at .5, y up. The rays of an orthographic camera are parallel:
+// its ray.xy is a position, in scene units, and the surface point is (ray.xy, viewZ).
+
+const bool orthographic;
 
 // The view-space point seen at `pixel`, at depth `viewZ` (negative, scene units).
 vec3 viewPosAt(vec2 pixel, float viewZ, vec4 rayFromPixel) {
-    return vec3((pixel * rayFromPixel.xy + rayFromPixel.zw) * -viewZ, viewZ);
+    return vec3((pixel * rayFromPixel.xy + rayFromPixel.zw) * (orthographic ? 1.0 : -viewZ), viewZ);
 }
 
 // The pixel that sees `viewPos`. A point behind the eye, or at its depth, gives a pixel far outside the screen.
 vec2 pixelAt(vec3 viewPos, vec4 pixelFromRay) {
-    return viewPos.xy / max(-viewPos.z, 1e-20) * pixelFromRay.xy + pixelFromRay.zw;
+    return viewPos.xy / (orthographic ? 1.0 : max(-viewPos.z, 1e-20)) * pixelFromRay.xy + pixelFromRay.zw;
+}
+
+// The point at depth `viewZ` on the eye's ray through `viewPos`.
+vec3 onRayOf(vec3 viewPos, float viewZ) {
+    return orthographic ? vec3(viewPos.xy, viewZ) : viewPos * (viewZ / viewPos.z);
+}
+
+// The direction in which the eye sees `viewPos`, of any length.
+vec3 sightTo(vec3 viewPos) {
+    return orthographic ? vec3(0.0, 0.0, -1.0) : viewPos;
 }
 
 // True if no surface was drawn: the G-buffer is cleared to viewZ = -infinity.
@@ -23,5 +36,5 @@ bool isBackground(float viewZ) {
 // is up to half a pixel from the lookup in x and in y. That moves a plane by at most 0.71 pixels, so it cannot block
 // itself.
 float liftOff(float bias, float reach, vec3 viewPos, vec4 rayFromPixel) {
-    return max(bias, (reach - viewPos.z) * rayFromPixel.x);
+    return max(bias, (orthographic ? 1.0 : reach - viewPos.z) * rayFromPixel.x);
 }

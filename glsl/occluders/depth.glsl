@@ -16,7 +16,7 @@ struct Occluder {
 bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
-    occluder.viewPos = samplePos * (surfaceZ / samplePos.z);
+    occluder.viewPos = onRayOf(samplePos, surfaceZ);
     float depthBehind = surfaceZ - samplePos.z;
     return abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;  // 0 < depthBehind < thickness in one comparison
 }

@@ -25,7 +25,7 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     vec4 z = texture(layersZ, occluder.uv);
     occluder.layer = solidAt(z, samplePos.z, thickness);
-    occluder.viewPos = samplePos * (z[max(occluder.layer, 0)] / samplePos.z);
+    occluder.viewPos = onRayOf(samplePos, z[max(occluder.layer, 0)]);
     return occluder.layer >= 0;
 }
 

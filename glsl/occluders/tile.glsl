@@ -12,7 +12,7 @@ struct Occluder {
 bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder occluder) {
     occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;
     float surfaceZ = texture(viewZ, occluder.uv).r;
-    occluder.viewPos = samplePos * (surfaceZ / samplePos.z);
+    occluder.viewPos = onRayOf(samplePos, surfaceZ);
     bool inPicture = occluder.uv == clamp(occluder.uv, view_region.xy, view_region.zw);
     return inPicture && abs(surfaceZ - samplePos.z - 0.5 * thickness) < 0.5 * thickness;
 }

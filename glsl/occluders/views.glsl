@@ -16,7 +16,7 @@ uniform sampler2D viewsNormal;
 uniform sampler2D viewsSender;               // RGB radiance that leaves the surfaces that each view sees
 uniform vec4 tile_from_ray;                  // where a view's ray meets its picture, from -1 to 1
 uniform vec2 tile_half;                      // half the size of a tile, as uv of the atlas
-uniform float view_pixel_width;              // of a further view, at distance 1
+uniform float view_pixel_width;              // of a further view, at distance 1, or at all if it is orthographic
 uniform mat4 view_from_camera[views];        // a further view's space from the camera's view space
 uniform mat4 camera_from_view[views];
 
@@ -38,7 +38,7 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
     float depthBehind = onScreen ? surfaceZ - samplePos.z : UNKNOWN;
     // a texel's depth is its centre's, and the receiver was lifted for the camera's pixels, not for a view's: off the
     // screen, nothing within two pixels' width blocks, so that a plane up to 63 degrees off does not block itself
-    float share = onScreen ? 1.0 : 1.0 - 2.0 * view_pixel_width;  // of a distance, that must be exceeded
+    float margin = onScreen ? 0.0 : 2.0 * view_pixel_width;  // at distance 1, or at all distances
     bool insideSolid = false;
     vec3 thereOfNearest = samplePos;
     float nearestZ = surfaceZ;
@@ -49,7 +49,7 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
         vec2 uv = (inTile + vec2(2 * (k & 1) + 1, 2 * (k >> 1) + 1)) * tile_half;  // two tiles in a row
         vec4 z = texture(viewsZ, uv);
         if (view_layers > 1) insideSolid = insideSolid || (inPicture && solidAt(z, there.z, thickness) >= 0);
-        float behind = inPicture ? z.x - share * there.z : UNKNOWN;
+        float behind = inPicture ? z.x - there.z - margin * (orthographic ? 1.0 : -there.z) : UNKNOWN;
         if (behind < depthBehind) {
             depthBehind = behind;
             occluder.view = k + 1;
@@ -58,7 +58,7 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
             nearestZ = z.x;
         }
     }
-    occluder.viewPos = thereOfNearest * (nearestZ / thereOfNearest.z);
+    occluder.viewPos = onRayOf(thereOfNearest, nearestZ);
     if (occluder.view > 0) occluder.viewPos = (camera_from_view[occluder.view - 1] * vec4(occluder.viewPos, 1.0)).xyz;
     if (view_layers > 1) return insideSolid && depthBehind > 0.0;
     return abs(depthBehind - 0.5 * thickness) < 0.5 * thickness;

@@ -25,9 +25,10 @@ void main() {
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel);
-    float normalDotRay = dot(normal, ray);
-    float planeOffset = normalDotRay * -centreZ;
+    vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
+    float normalDotRay = dot(normal.xy, ray);
+    float planeOffset = alongNormal(normalDotRay, normal.z, centreZ);
+    float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     float weights = 1.0;
@@ -35,7 +36,7 @@ void main() {
         if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
-        float plane = planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ);
+        float plane = (alongNormal(normalDotRay + float(i) * rayStep, normal.z, otherZ) - planeOffset) / tolerance;
         float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
         float weight = (abs(i) == REACH ? 0.5 : 1.0) * max(1.0 - plane * plane, 0.0) * pow(alike, 8.0);
         if (weight > 0.0) {  // the background's plane distance is infinite

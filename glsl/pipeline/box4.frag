@@ -25,9 +25,10 @@ void main() {
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel);
-    float normalDotRay = dot(normal, ray);
-    float planeOffset = normalDotRay * -centreZ;
+    vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
+    float normalDotRay = dot(normal.xy, ray);
+    float planeOffset = alongNormal(normalDotRay, normal.z, centreZ);
+    float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     float count = 1.0;
@@ -36,7 +37,8 @@ void main() {
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
         float alike = dot(normal, texelFetch(viewNormal, other, 0).xyz);
-        if (planeDistance(normalDotRay + float(i) * rayStep, otherZ, planeOffset, centreZ) < 1.0 && alike > LEAST_ALIKE) {
+        float plane = alongNormal(normalDotRay + float(i) * rayStep, normal.z, otherZ) - planeOffset;
+        if (abs(plane) < tolerance && alike > LEAST_ALIKE) {
             sum += sourcesAt(other);
             count += 1.0;
         }

@@ -20,7 +20,7 @@ const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's 
 
 uniform sampler2D nearerZ;
 uniform sampler2D emission_texture;
-uniform vec3 emission;
+uniform vec3 emission;  // of each mesh, times its texture
 uniform vec4 pixel_from_ray;
 uniform mat4 last_from_view;        // the last camera's view space from this one's
 uniform vec4 last_pixel_from_ray;
@@ -57,7 +57,7 @@ void main() {
     // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
     // derivatives, which at a horizon reach over to what lies behind the eye
     vec3 faceNormal = cross(dFdx(viewPos), dFdy(viewPos));
-    faceNormal = faceforward(faceNormal, viewPos, faceNormal);
+    faceNormal = faceforward(faceNormal, sightTo(viewPos), faceNormal);
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);

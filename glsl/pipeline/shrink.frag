@@ -3,6 +3,7 @@
 // Inputs: viewZ, viewNormal, albedo at full size. Outputs: smallViewZ (R32F), smallNormal, smallAlbedo (RGBA16F).
 
 #include "lib/space.glsl"
+#include "lib/filter.glsl"
 #include "lib/shrink.glsl"
 
 uniform sampler2D viewZ;
@@ -16,14 +17,19 @@ out vec4 smallNormal;
 out vec4 smallAlbedo;
 
 void main() {
-    vec3 ray = viewPosAt(gl_FragCoord.xy, -1.0, small_ray_from_pixel);
+    vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, small_ray_from_pixel).xy;
     ivec2 nearest = nearestLarge(gl_FragCoord.xy, textureSize(viewZ, 0), ray_from_pixel, small_ray_from_pixel);
     smallViewZ = texelFetch(viewZ, nearest, 0).r;
     smallNormal = texelFetch(viewNormal, nearest, 0);
     smallAlbedo = texelFetch(albedo, nearest, 0);
     if (isBackground(smallViewZ)) return;
-    vec3 nearestRay = viewPosAt(vec2(nearest) + 0.5, -1.0, ray_from_pixel);
+    vec2 nearestRay = viewPosAt(vec2(nearest) + 0.5, -1.0, ray_from_pixel).xy;
+    vec3 normal = smallNormal.xyz;
     // near a silhouette the plane is seen edge-on and would lead far away: at most 2 % are followed
-    float along = dot(smallNormal.xyz, nearestRay) / dot(smallNormal.xyz, ray);
-    smallViewZ *= clamp(along, 0.98, 1.02);
+    if (orthographic) {
+        float limit = 0.02 * COT_22_5 * -ray_from_pixel.w;
+        smallViewZ += clamp(dot(normal.xy, nearestRay - ray) / normal.z, -limit, limit);
+    } else {
+        smallViewZ *= clamp(dot(normal, vec3(nearestRay, -1.0)) / dot(normal, vec3(ray, -1.0)), 0.98, 1.02);
+    }
 }

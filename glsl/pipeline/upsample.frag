@@ -17,8 +17,8 @@ uniform vec4 small_ray_from_pixel;
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float centreZ = texelFetch(viewZ, pixel, 0).r;
-    vec3 centrePos = viewPosAt(gl_FragCoord.xy, isBackground(centreZ) ? -1.0 : centreZ, ray_from_pixel);
-    vec2 smallPixel = (centrePos.xy / -centrePos.z - small_ray_from_pixel.zw) / small_ray_from_pixel.xy - 0.5;
+    vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
+    vec2 smallPixel = (ray - small_ray_from_pixel.zw) / small_ray_from_pixel.xy - 0.5;
     ivec2 corner = ivec2(floor(smallPixel));
     vec2 part = smallPixel - vec2(corner);
     ivec2 last = textureSize(smallViewZ, 0) - 1;
@@ -27,7 +27,8 @@ void main() {
     if (isBackground(centreZ)) return;
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    float planeOffset = dot(normal, centrePos);
+    float planeOffset = alongNormal(dot(normal.xy, ray), normal.z, centreZ);
+    float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);
     mat4 sum = mat4(0.0);
     float weights = 0.0, nearestGap = 1e30;
     for (int i = 0; i < 4; ++i) {
@@ -35,8 +36,8 @@ void main() {
         ivec2 other = clamp(corner + step, ivec2(0), last);
         float otherZ = texelFetch(smallViewZ, other, 0).r;
         mat4 value = sourcesAt(other);
-        vec3 otherRay = viewPosAt(vec2(other) + 0.5, -1.0, small_ray_from_pixel);
-        float gap = planeDistance(dot(normal, otherRay), otherZ, planeOffset, centreZ);
+        vec2 otherRay = viewPosAt(vec2(other) + 0.5, -1.0, small_ray_from_pixel).xy;
+        float gap = abs(alongNormal(dot(normal.xy, otherRay), normal.z, otherZ) - planeOffset) / tolerance;
         vec2 bilinear = mix(1.0 - part, part, vec2(step));
         float alike = max(dot(normal, texelFetch(smallNormal, other, 0).xyz), 0.0);
         float weight = (bilinear.x * bilinear.y + 1e-3) * max(1.0 - gap, 0.0) * pow(alike, 8.0);

@@ -26,23 +26,35 @@ def directions(count: int) -> np.ndarray:
 # --- space
 
 
+@pytest.mark.parametrize("ortho", [None, 7.0], ids=["perspective", "orthographic"])
 @pytest.mark.parametrize("size", [(1, 1), (1, 7), (640, 360), (33, 64)])
-def test_pixels_become_positions_and_positions_pixels(glsl, size):
-    camera = aolab.Camera((1, 2, 3), (0, 0, 0), fov=50)
+def test_pixels_become_positions_and_positions_pixels(glsl, size, ortho):
+    camera = aolab.Camera((1, 2, 3), (0, 0, 0), fov=50, ortho=ortho)
     view = View(camera, size, np.array([[-1.0] * 3, [1.0] * 3]))
     pixel = RNG.random((500, 2)) * size
     view_z = -np.exp(RNG.uniform(np.log(1e-3), np.log(1e4), 500))
 
-    ray = {"ray_from_pixel": view.uniforms["ray_from_pixel"]}
-    position = glsl("lib/space.glsl", "result.xyz = viewPosAt(x.xy, x.z, ray_from_pixel);", rows(pixel, view_z), **ray)
+    def evaluate(expression: str, x: np.ndarray) -> np.ndarray:
+        given = {name: view.uniforms[name] for name in ("ray_from_pixel", "pixel_from_ray")}
+        return glsl("lib/space.glsl", f"result.xyz = {expression};", x, **view.constants, **given)[:, :3]
+
+    position = evaluate("viewPosAt(x.xy, x.z, ray_from_pixel)", rows(pixel, view_z))
+    scale = np.maximum(-view_z, 1)[:, None]
+    np.testing.assert_allclose(position / scale, view.positions(pixel, view_z) / scale, rtol=1e-5, atol=1e-5)
     # the twin: the window coordinates of the position's projection are the pixel
-    clip = np.append(position[:, :3], np.ones((500, 1)), axis=1) @ camera.clip_from_view(size, view.bounds).T
+    clip = np.append(position, np.ones((500, 1)), axis=1) @ camera.clip_from_view(size, view.bounds).T
     np.testing.assert_allclose((clip[:, :2] / clip[:, 3:] + 1) / 2 * size, pixel, atol=1e-5 * max(size))
     np.testing.assert_allclose(position[:, 2], view_z, rtol=1e-6)
 
-    back = {"pixel_from_ray": view.uniforms["pixel_from_ray"]}
-    again = glsl("lib/space.glsl", "result.xy = pixelAt(x.xyz, pixel_from_ray);", position, **back)
-    np.testing.assert_allclose(again[:, :2], pixel, atol=1e-5 * max(size))
+    for again in (evaluate("vec3(pixelAt(x.xyz, pixel_from_ray), 0.0)", rows(position))[:, :2], view.pixels(position)):
+        np.testing.assert_allclose(again, pixel, atol=1e-5 * max(size))
+
+    # a point farther along the same ray: the eye sees it at the same pixel, in the direction of the ray
+    behind = evaluate("onRayOf(x.xyz, 2.0 * x.z)", rows(position))
+    np.testing.assert_allclose(behind[:, 2], 2 * view_z, rtol=1e-6)
+    np.testing.assert_allclose(view.pixels(behind), pixel, atol=1e-5 * max(size))
+    sight = evaluate("sightTo(x.xyz)", rows(position))
+    np.testing.assert_allclose(np.cross(sight, behind - position), 0, atol=1e-4 * view_z.max() ** 2)
 
 
 def test_a_point_behind_the_eye_lands_far_off_the_screen(glsl):
@@ -61,6 +73,13 @@ def test_lift_off_is_the_bias_or_a_pixel_at_the_farthest_point(glsl):
     x = rows([0.5, 0.0, 0.0], [2.0, 2.0, 0.0], [-10.0, -10.0, -10.0])
     lift = glsl("lib/space.glsl", "result.x = liftOff(x.x, x.y, vec3(0, 0, x.z), a);", x, a=(0.01, 0.01, 0, 0))
     np.testing.assert_allclose(lift[:, 0], [0.5, 0.12, 0.1], rtol=1e-6)
+
+
+def test_lift_off_of_an_orthographic_picture_is_the_bias_or_a_pixel(glsl):
+    x = rows([0.5, 0.0, 0.0], [2.0, 2.0, 0.0], [-10.0, -10.0, -10.0])
+    text = "result.x = liftOff(x.x, x.y, vec3(0, 0, x.z), a);"
+    lift = glsl("lib/space.glsl", text, x, orthographic=True, a=(0.01, 0.01, 0, 0))
+    np.testing.assert_allclose(lift[:, 0], [0.5, 0.01, 0.01], rtol=1e-6)
 
 
 # --- sampling
@@ -110,16 +129,23 @@ def test_offsets_stay_in_one_step_and_are_spread_evenly(glsl):
 # --- filter
 
 
-def test_plane_distance_is_the_distance_off_the_tangent_plane_in_tolerances(glsl):
-    normal, centre = directions(60), RNG.normal(size=(60, 3)) - (0, 0, 8)
-    other = RNG.normal(size=(60, 3)) - (0, 0, 8)
-    expected = np.abs(((other - centre) * normal).sum(axis=1)) / (0.002 * -centre[:, 2])
+@pytest.mark.parametrize("orthographic", [False, True])
+def test_neighbours_are_measured_by_their_distance_off_the_tangent_plane(glsl, orthographic):
+    normal, other = directions(60), RNG.normal(size=(60, 3)) - (0, 0, 8)
+    ray = other[:, :2] if orthographic else other[:, :2] / -other[:, 2:]
+    x = rows((normal[:, :2] * ray).sum(axis=1), normal[:, 2], other[:, 2])
+    along = glsl("lib/filter.glsl", "result.x = alongNormal(x.x, x.y, x.z);", x, orthographic=orthographic)
+    np.testing.assert_allclose(along[:, 0], (normal * other).sum(axis=1), rtol=1e-4, atol=1e-5)
 
-    normal_dot_ray = (normal * other).sum(axis=1) / -other[:, 2]
-    offset = (normal * centre).sum(axis=1)
-    x = rows(normal_dot_ray, other[:, 2], offset, centre[:, 2])
-    distance = glsl("lib/filter.glsl", "result.x = planeDistance(x.x, x.y, x.z, x.w);", x)
-    np.testing.assert_allclose(distance[:, 0], expected, rtol=1e-3, atol=1e-3)
+
+def test_the_tolerance_is_a_share_of_the_distance_or_of_the_pictures_height(glsl):
+    """The same at the distance from which a camera of 45 degrees shows the orthographic picture's height."""
+    half = 3 * np.tan(np.radians(22.5))
+    for orthographic in (False, True):
+        tolerance = glsl(
+            "lib/filter.glsl", "result.x = planeTolerance(x.x, x.y);", rows([-3.0], [half]), orthographic=orthographic
+        )
+        np.testing.assert_allclose(tolerance[0, 0], 0.002 * 3, rtol=1e-6)
 
 
 # --- colour

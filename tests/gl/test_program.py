@@ -44,7 +44,7 @@ def test_a_vertex_shaders_error_names_the_vertex_shader(gl, shaders):
 
 def test_a_text_shaders_error_counts_the_texts_lines(gl):
     with pytest.raises(ShaderError, match=r"<inline>:4: .*oops"):
-        Programs().get('#include "lib/space.glsl"\nout vec4 color;\nvoid main() {\n    color = oops;\n}\n')
+        Programs().get('#include "lib/color.glsl"\nout vec4 color;\nvoid main() {\n    color = oops;\n}\n')
 
 
 def test_a_shader_that_compiles_but_does_not_link_is_an_error(gl):

@@ -8,7 +8,7 @@ import aolab
 from aolab.scene.view import View
 from aolab.truth import reference
 from aolab.truth.integrals import integrate
-from aolab.truth.points import Surface, pixel_rays
+from aolab.truth.points import Surface, window
 from aolab.truth.sample import Setting, randoms
 from aolab.truth.sky import Sky
 from aolab.truth.world import World
@@ -44,7 +44,7 @@ def test_points_are_seen_by_the_eye_and_lie_on_the_pixels_ray():
     eye = np.broadcast_to(surface._eye.astype(np.float32), towards.shape)
     hidden = surface._world.occluded(np.ascontiguousarray(eye), towards, distance * np.float32(1 - 1e-5))
     assert hidden.mean() < 1e-4
-    rays = pixel_rays(surface.view, surface.pixel) @ surface._world_from_view[:3, :3].T
+    rays = surface.view.sights(window(surface.view, surface.pixel)) @ surface._world_from_view[:3, :3].T
     rays /= np.linalg.norm(rays, axis=1, keepdims=True)
     pixel_width = distance * 2 * np.tan(np.radians(frame.camera.fov) / 2) / 135
     beside = np.linalg.norm(np.cross(rays, towards), axis=1) * distance / pixel_width
