@@ -7,7 +7,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.special import lpmv
 
-from aolab import paths
+from aolab.gl.source import assemble
 from aolab.maths import harmonics as sh
 
 AXES = np.array([[1, 0, 0], [0, 1, 0], [0, 0, 1], [-1, 0, 0], [0, -1, 0], [0, 0, -1]], float)
@@ -222,8 +222,7 @@ def test_product_is_the_projection_of_the_pointwise_product():
 # --- the GLSL twin of bands 0 to 2; tests/gl/test_sh.py has the others
 
 
-SH_SHADER = """#version 330
-%s
+SH_SHADER = """#include "lib/sh.glsl"
 uniform vec3 coefficients[9];
 in vec3 direction;
 out vec3 irradiance;
@@ -238,7 +237,7 @@ void main() {
 
 
 def test_glsl_basis_and_irradiance_equal_numpy(gl):
-    source = SH_SHADER % (paths.glsl() / "lib" / "sh.glsl").read_text()
+    source = assemble(SH_SHADER).text
     names = ["irradiance", "y012", "y345", "y678"]
     program = gl.program(vertex_shader=source, varyings=names)
     coefficients = np.random.default_rng(3).normal(size=(9, 3)).astype("f4")

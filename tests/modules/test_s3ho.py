@@ -334,7 +334,7 @@ def test_one_bounce_under_a_constant_sky_is_the_blocked_share_times_the_senders_
 
 
 def test_twelve_buffers_accumulate(lab, boxes):
-    """That is more than a framebuffer takes. Rendered twice: textures that are not cleared show when used again."""
+    """These are more than a framebuffer takes. Rendered twice: textures that are not cleared show when used again."""
     once = [lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, seed=seed) for seed in (0, 1)]
     for _ in range(2):
         both = lab.render(under(boxes, SUN), "s3ho", indirect=True, radius=1.0, accumulate=2)
