@@ -59,7 +59,7 @@ def test_defaults_are_not_written_a_second_time(module: str) -> None:
 
 
 @pytest.mark.parametrize(("page", "directive", "file", "options"), QUOTES)
-def test_what_a_page_quotes_is_there(page: str, directive: str, file: str, options: str) -> None:
+def test_the_quotations_of_a_page_exist(page: str, directive: str, file: str, options: str) -> None:
     source = (DOCS / page).parent / file
     assert source.is_file(), f"docs/{page} quotes {file}, which does not exist"
     assert ":lines:" not in options, f"docs/{page} quotes {file} by line numbers; use text, which moves with the code"

@@ -1,4 +1,4 @@
-"""`import aolab` is light: what is heavy comes when first used, and OpenGL when something renders."""
+"""`import aolab` is light: heavy libraries are loaded on first use, and OpenGL by the first render."""
 
 import pytest
 

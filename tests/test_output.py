@@ -61,7 +61,7 @@ def test_permissions_are_those_of_any_new_file(tmp_path):
     assert stat.S_IMODE((tmp_path / "a").stat().st_mode) == stat.S_IMODE((tmp_path / "b").stat().st_mode)
 
 
-def test_what_is_in_the_way_is_named(tmp_path, monkeypatch):
+def test_the_message_names_the_obstacle(tmp_path, monkeypatch):
     (tmp_path / "file").touch()
     (tmp_path / "folder").mkdir()
     for path, reason in (
@@ -76,7 +76,7 @@ def test_what_is_in_the_way_is_named(tmp_path, monkeypatch):
         check_writable(tmp_path / "a.png")
 
 
-def test_a_picture_knows_how_it_was_made(tmp_path):
+def test_a_picture_contains_how_it_was_made(tmp_path):
     info = {"module": "ssao", "parameters": {"radius": 0.1, "name": "Größe"}, "size": [3, 2]}
     save_png(tmp_path / "a.png", PICTURE, info)
     assert read_png(tmp_path / "a.png") == info

@@ -11,7 +11,7 @@ from PIL import Image
 
 CHECKOUT = Path(__file__).parents[1]
 SCRIPTS = "Scripts" if os.name == "nt" else "bin"
-# what would lead the installed package, or pip, back to the checkout
+# variables that would lead the installed package, or pip, back to the checkout
 LEADS_BACK = {"PYTHONPATH", "AOLAB_GLSL", "AOLAB_SCENES", "VIRTUAL_ENV"}
 
 

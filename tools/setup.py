@@ -118,7 +118,7 @@ def main(stage: str) -> None:
         print(f"installing the {stage} tools into .venv", flush=True)
         if stage == "dev":
             offer_libatomic()
-        pip_install("pip>=25.1")  # the first that knows --group
+        pip_install("pip>=25.1")  # the first version with --group
         extras = "[tune,mitsuba,notebook,draco]" if stage == "dev" else ""  # the tests try every extra for real
         pip_install("--group", stage, "--editable", f".{extras}")
 
