@@ -17,10 +17,10 @@ FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
 	| git hash-object --stdin-paths | git hash-object --stdin
 
 # A stamp holds the checkout's path: the editable install names it, so a moved checkout is set up again.
-$(shell grep -qxF "$$(pwd)" $(RUNTIME) 2>/dev/null || rm -f $(RUNTIME))
+MOVED := $(if $(filter $(shell pwd),$(shell cat $(RUNTIME) 2>/dev/null)),,moved)
 
 .NOTPARALLEL:
-.PHONY: help demo lint types full gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
+.PHONY: moved help demo lint types full gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
 
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png: 10 seconds after the set-up'
@@ -81,7 +81,7 @@ distclean: clean
 	rm -rf .venv
 
 # A stamp is written only after its set-up has finished, so an interrupted set-up is done again.
-$(RUNTIME): pyproject.toml tools/setup.py
+$(RUNTIME): pyproject.toml tools/setup.py $(MOVED)
 	$(PYTHON) tools/setup.py runtime
 	@pwd > $@
 
