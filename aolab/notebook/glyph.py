@@ -29,6 +29,7 @@ class Glyph:
     `light` (16, 3): c_Lin, RGB: the environment's radiance plus the windowed lobe of each light (Eq. 4). Shadow maps
     are left out, so that the glyph shows the effect of the pixel's own coefficients on the light.
     `bounce` (16, 3): c_SSGI, RGB: the light that nearby occluders reflect (Eq. 5); None if the frame has no bounce.
+    `bounce_light` (16, 3): the incoming light at the mean position of these occluders, RGB; None without a bounce.
     `camera`: the camera of the frame; pictures show the glyph from its direction. A notebook shows `picture()`.
     """
 
@@ -38,6 +39,7 @@ class Glyph:
     coefficients: np.ndarray
     light: np.ndarray
     bounce: np.ndarray | None
+    bounce_light: np.ndarray | None
     camera: Camera
 
     @property
@@ -53,8 +55,16 @@ class Glyph:
 
     @property
     def irradiance(self) -> np.ndarray:
-        """(3,): E = c_Lin · c (Eq. 3), RGB, including the bounce. Not clamped: four bands can ring below 0."""
-        return (self.light * self.transfer).sum(axis=0)
+        """(3,): E = c_Lin · c (Eq. 3), RGB, and `bounced`. Not clamped: four bands can ring below 0."""
+        direct = (self.light * self.coefficients[:, None]).sum(axis=0)
+        return direct if self.bounced is None else direct + self.bounced
+
+    @property
+    def bounced(self) -> np.ndarray | None:
+        """(3,): the irradiance that nearby occluders reflect, RGB: c_SSGI under the light at the occluders."""
+        if self.bounce is None or self.bounce_light is None:
+            return None
+        return (self.bounce_light * self.bounce).sum(axis=0)
 
     @cached_property
     def lobe(self) -> Lobe:

@@ -9,7 +9,7 @@ from ..errors import ParameterError
 from ..gl.texture import Size
 from ..maths.harmonics import hanning, light_lobe, rotate, zonal_lobe
 from ..modules import MODULES, S3HO
-from ..modules.s3ho import BOUNCE, unpacked
+from ..modules.s3ho import BOUNCE, SENDERS, unpacked
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
 from ..scene.lights import DirectionalLight
@@ -20,6 +20,7 @@ from ..truth.points import window
 from .glyph import Glyph
 
 HARMONICS = [f"sh{i}" for i in range(4)]
+SENDER_LIFT = 0.08  # radii; as in glsl/s3ho.indirect.frag
 
 
 def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
@@ -35,13 +36,20 @@ def glyph(frame: Frame, pixel: tuple[int, int]) -> Glyph:
     if not here.mask[0, 0]:
         raise ParameterError(f"glyph: pixel ({column}, {row}) is in the background; frame.mask is True at surfaces")
     position = _position(frame.camera, frame.size, (column, row), float(here["viewZ"][0, 0]))
+    parameters = frame.info["parameters"]
+    window = parameters.get("light_window", S3HO().light_window)
+    bounce = bounce_light = None
+    if set(SENDERS) <= set(frame.buffers):
+        bounce = _bounce(here)
+        bounce_light = _light(scene, position + parameters["radius"] * _to_senders(here, bounce), window)
     return Glyph(
         pixel=(column, row),
         position=position,
         normal=here.world_normal()[0, 0],
         coefficients=np.concatenate([here[name][0, 0] for name in HARMONICS]).astype(np.float64),
-        light=_light(scene, position, frame.info["parameters"].get("light_window", S3HO().light_window)),
-        bounce=_bounce(here) if set(BOUNCE) <= set(frame.buffers) else None,
+        light=_light(scene, position, window),
+        bounce=bounce,
+        bounce_light=bounce_light,
         camera=frame.camera,
     )
 
@@ -118,3 +126,14 @@ def _bounce(here: Frame) -> np.ndarray:
     seen = np.zeros((16, 3))
     seen[:9] = unpacked(texels)
     return rotate(seen.T, here.camera.view_from_world[:3, :3].T).T
+
+
+def _to_senders(here: Frame, bounce: np.ndarray) -> np.ndarray:
+    """(3,) world space, in radii: from the pixel to its senders' mean position, as in glsl/s3ho.indirect.frag."""
+    *offset, weight = here["sender_offset"][0, 0].astype(np.float64)
+    if weight <= 0:
+        return np.zeros(3)
+    world_from_view = here.camera.view_from_world[:3, :3].T
+    y, z, x = bounce[1:4].sum(axis=1) * (-1, 1, -1)  # band 1 of a lobe around n is -n.y, n.z, -n.x times a factor
+    normal = np.array((x, y, z))
+    return world_from_view @ (np.array(offset) / weight) + SENDER_LIFT * normal / max(np.linalg.norm(normal), 1e-10)
