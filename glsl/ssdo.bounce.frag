@@ -17,10 +17,12 @@ void main() {
     if (!receiverHere(receiver)) return;
 
     vec3 sum = vec3(0.0);
+#pragma unroll
     for (int i = 0; i < directions; ++i) {
         Occluder first;
-        if (firstBlocked(receiver, i, first) == OPEN) continue;
-        sum += occluderRadiance(first) * formFactor(receiver, i, first, occluderNormal(first));
+        if (firstBlocked(receiver, i, first) != OPEN) {
+            sum += occluderRadiance(first) * formFactor(receiver, i, first, occluderNormal(first));
+        }
     }
     bounce = vec4(sum, 1.0);
 }

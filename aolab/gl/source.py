@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .. import paths
 from ..errors import ShaderError, suggestion
+from .unroll import unrolled
 
 VERSION = "#version 330 core"
 SUFFIXES = (".glsl", ".frag", ".vert")
@@ -65,7 +66,8 @@ def assemble(
 
     `shader` is a file under glsl/ ("ssao.frag"), the path of another file, or GLSL text (anything with a line break).
     An include of a file outside of glsl/ is looked up beside that file first, then under glsl/. A line
-    `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the
+    `const int directions;` is a hole that `constants["directions"]` fills. Loops under `#pragma unroll` are unrolled
+    (aolab/gl/unroll.py). `aliases` maps an include's name to the
     file, or to the GLSL text, that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a
     constant that is not given.
     """
@@ -76,7 +78,9 @@ def assemble(
         builder.add(name, str(shader), [])
     else:
         name = builder.include(shader, [], f"shader '{shader}'")
-    return Source(name, "\n".join(builder.text) + "\n", builder.lines, builder.files, builder.used)
+    made = unrolled(list(zip(builder.text, builder.lines, strict=True)))
+    text, lines = "\n".join(line for line, _ in made) + "\n", [place for _, place in made]
+    return Source(name, text, lines, builder.files, builder.used)
 
 
 def is_text(shader: str | Path) -> bool:

@@ -32,17 +32,17 @@ void main() {
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     float weights = 1.0;
+#pragma unroll
     for (int i = -REACH; i <= REACH; ++i) {
-        if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
         float plane = (alongNormal(normalDotRay + float(i) * rayStep, normal.z, otherZ) - planeOffset) / tolerance;
         float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
-        float weight = (abs(i) == REACH ? 0.5 : 1.0) * max(1.0 - plane * plane, 0.0) * pow(alike, 8.0);
-        if (weight > 0.0) {  // the background's plane distance is infinite
-            sum += weight * sourcesAt(other);
-            weights += weight;
-        }
+        float share = i == 0 ? 0.0 : abs(i) == REACH ? 0.5 : 1.0;  // the centre is in the sum already
+        // the background's plane distance is infinite
+        float weight = abs(plane) < 1.0 ? share * (1.0 - plane * plane) * pow(alike, 8.0) : 0.0;
+        sum += weight * sourcesAt(other);
+        weights += weight;
     }
     writeResults(sum / weights);
 }

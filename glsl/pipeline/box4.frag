@@ -32,16 +32,15 @@ void main() {
     // the rays of a row, or column, differ in one component: by this much a pixel
     float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
     float count = 1.0;
+#pragma unroll
     for (int i = -1; i <= 2; ++i) {
-        if (i == 0) continue;
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
         float alike = dot(normal, texelFetch(viewNormal, other, 0).xyz);
         float plane = alongNormal(normalDotRay + float(i) * rayStep, normal.z, otherZ) - planeOffset;
-        if (abs(plane) < tolerance && alike > LEAST_ALIKE) {
-            sum += sourcesAt(other);
-            count += 1.0;
-        }
+        float weight = i != 0 && abs(plane) < tolerance && alike > LEAST_ALIKE ? 1.0 : 0.0;
+        sum += weight * sourcesAt(other);
+        count += weight;
     }
     writeResults(sum / count);
 }
