@@ -8,6 +8,8 @@ from dataclasses import asdict, replace
 from time import perf_counter
 from typing import Any
 
+import moderngl
+
 from ..errors import Notice, ParameterError
 from ..gl import context
 from ..gl.bindings import Bindings
@@ -17,6 +19,7 @@ from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
 from ..modules.buffers import BUFFERS, ON_DEMAND
 from ..modules.occluders.base import Occluders
+from ..scene import clipping
 from ..scene.camera import Camera
 from ..scene.environment import Environment
 from ..scene.lights import Light
@@ -159,11 +162,17 @@ class Lab:
         camera = camera or scene.camera
         assert camera is not None  # Scene frames itself
         module = module.resolved(scene)
-        view = View(camera, size, scene.bounds)
+        view = View(clipping.unclipped(camera, scene, size), size, scene.bounds)
         self._make_room({view.size, view.scaled(module.scale).size})
         rasterizer = self._rasterizer(scene, last_frame(last, view))
         frame = FrameContext(rasterizer, module, view, range(seed, seed + frames))
-        return self._lit(self._state(frame), frame.rasterizer, display)
+        drawn = context.get().query(samples=True)
+        result = self._lit(self._state(frame, drawn), frame.rasterizer, display)
+        if not drawn.samples:
+            warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
+        elif reason := clipping.reason_of_cut(scene, view):
+            warnings.warn(reason, Notice, stacklevel=2)
+        return result
 
     def _rasterizer(self, scene: Scene, last: Bindings) -> Rasterizer:
         """The means to draw one frame of the scene."""
@@ -180,11 +189,12 @@ class Lab:
             self._pool.trim(sizes)
             self._sizes = sizes
 
-    def _state(self, frame: FrameContext) -> SurfaceState:
-        """The surfaces, and the module's estimate if it does not depend on light."""
+    def _state(self, frame: FrameContext, drawn: moderngl.Query) -> SurfaceState:
+        """The surfaces, whose pixels `drawn` counts, and the estimate of a module that does not depend on light."""
         module, view, runner = frame.module, frame.view, frame.runner
         with self._lending(runner):
-            large = frame.rasterizer.surfaces([view], formats=surface_formats(frame))
+            with drawn:
+                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame))
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
             state = SurfaceState(frame, large, small, small_view, occluders(frame, large), {})

@@ -85,7 +85,8 @@ class Camera:
         distances = -(corners @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
         far = self.far or max(float(distances.max()) * 1.01, 1e-6)
         # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m, and parallel rays lose nothing
-        near = self.near or max(float(distances.min()) * 0.99, far * (1e-3 if self.ortho is None else 1e-6))
+        near = max(float(distances.min()) * 0.99, far * (1e-3 if self.ortho is None else 1e-6))
+        near = self.near or min(near, far / 2)  # a far plane that is given stays
         return near, max(far, near * 1.001)
 
     def clip_from_view(self, size: tuple[int, int], bounds: np.ndarray) -> np.ndarray:

@@ -5,13 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..errors import shorten
 from ..maths.distances import to_boxes, to_triangles
 from .camera import Camera
+from .mesh import Mesh
 from .scene import Scene
 from .view import Size, View
 
 MARGIN = 0.9  # of the distance to the nearest surface
 LEAST = 1e-6  # of the far plane's distance: nearer surfaces are cut
+MOST_NAMES = 4  # of parts, in a message
 
 
 def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
@@ -23,6 +26,8 @@ def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
     if camera.near is not None or camera.ortho is not None:
         return camera
     near, far = camera.clip_planes(scene.bounds)
+    if _distances(camera, scene.bounds).min() > near:
+        return camera
     slant = float(np.sqrt(1 + np.square(camera.half_extent(size)).sum()))  # of the ray through a corner of the picture
     nearest = nearest_surface(scene, np.asarray(camera.eye), near * slant / MARGIN)
     if nearest is None:
@@ -84,23 +89,78 @@ def _hidden_by_material(instances: list) -> Iterator[str]:
             yield f"material '{material.name}' is not seen from behind"
 
 
-def cut_parts(scene: Scene, view: View) -> list[str]:
-    """The names of instances that lie wholly before the near or beyond the far plane, and else would be in view."""
-    near, far = view.camera.clip_planes(scene.bounds)
+def reason_of_cut(scene: Scene, view: View) -> str:
+    """The parts of the scene that the camera's clip planes cut out of the picture, as a sentence; "" if there are none.
+
+    Only planes that the camera gives are looked at: its own choice cuts nothing (see `unclipped`), or is told.
+    """
+    camera, told = view.camera, []
+    near, far = camera.clip_planes(scene.bounds)
+    if camera.near is not None and (names := _parts(scene, view, [(0, 0, 1, near), (0, 0, -1, 0)])):
+        told.append(f"the camera's near plane, near = {near:g}, cuts away parts of {', '.join(names)}")
+    if camera.far is not None and (names := _parts(scene, view, [(0, 0, -1, -far)])):
+        told.append(f"the camera's far plane, far = {far:g}, cuts away parts of {', '.join(names)}")
+    return "; ".join(told)
+
+
+def _parts(scene: Scene, view: View, planes: list[tuple[float, float, float, float]]) -> list[str]:
+    """The names of instances with a point in the picture's pyramid and on the positive side of all view-space `planes`.
+
+    A plane (x, y, z, w) has the value x p.x + y p.y + z p.z + w at a point p.
+    """
     half_x, half_y = view.camera.half_extent(view.size)
+    if view.camera.ortho is None:
+        sides = [(1, 0, -half_x, 0), (-1, 0, -half_x, 0), (0, 1, -half_y, 0), (0, -1, -half_y, 0)]
+    else:
+        sides = [(1, 0, 0, half_x), (-1, 0, 0, half_x), (0, 1, 0, half_y), (0, -1, 0, half_y)]
+    within = np.array([*planes, *sides], float)
     names = []
     for instance in scene.instances:
-        points = _corners(instance.bounds) @ view.camera.view_from_world[:3, :3].T + view.camera.view_from_world[:3, 3]
-        distance = -points[:, 2]
-        before, behind = distance.min() > 0 and distance.max() < near, distance.min() > far
-        if not before and not behind:
-            continue
-        x, y = points[:, 0], points[:, 1]
-        if view.camera.ortho is None:
-            x, y = x / distance, y / distance
-        if x.max() > -half_x and x.min() < half_x and y.max() > -half_y and y.min() < half_y:
-            names.append(instance.name or instance.mesh.name)
+        matrix = within @ view.camera.view_from_world @ instance.world_from_local  # the planes, in local space
+        if _reaches(instance.mesh, matrix):
+            names.append(f"'{shorten(instance.name or instance.mesh.name)}'")
+            if len(names) == MOST_NAMES:
+                return [*names[:-1], "others"]
     return names
+
+
+def _reaches(mesh: Mesh, planes: np.ndarray) -> bool:
+    """Has a triangle a point on the positive side of all `planes` (p, 4), of local space?"""
+
+    def values(points: np.ndarray) -> np.ndarray:
+        return points @ planes[:, :3].T + planes[:, 3]
+
+    boxes = np.array([_corners(box) for box in mesh.chunk_bounds])  # (c, 8, 3)
+    for number in np.flatnonzero((values(boxes).max(axis=1) > 0).all(axis=1)).tolist():
+        corners = mesh.vertices[mesh.chunk(number)].astype(np.float64)  # (n, 3, 3)
+        at_corners = values(corners)
+        if (at_corners > 0).all(axis=2).any():
+            return True
+        straddling = (at_corners.max(axis=1) > 0).all(axis=1)
+        if any(clipped(triangle, planes) for triangle in corners[straddling]):
+            return True
+    return False
+
+
+def clipped(polygon: np.ndarray, planes: np.ndarray) -> list[np.ndarray]:
+    """The part of a convex polygon (n, 3) on the positive side of `planes` (p, 4); Sutherland and Hodgman 1974."""
+    points = list(polygon)
+    for plane in planes:
+        heights = [float(point @ plane[:3] + plane[3]) for point in points]
+        kept = []
+        for i, point in enumerate(points):
+            before, height = heights[i - 1], heights[i]
+            if (before > 0) != (height > 0):
+                kept.append(points[i - 1] + (point - points[i - 1]) * (before / (before - height)))
+            if height > 0:
+                kept.append(point)
+        points = kept
+    return points
+
+
+def _distances(camera: Camera, bounds: np.ndarray) -> np.ndarray:
+    """(8,): of the corners of a box (2, 3) from the camera, along its view."""
+    return -(_corners(bounds) @ camera.view_from_world[2, :3] + camera.view_from_world[2, 3])
 
 
 def _corners(bounds: np.ndarray) -> np.ndarray:

@@ -43,6 +43,7 @@ def test_noise_that_is_fixed_to_the_picture_flickers_when_the_camera_moves_only(
     assert still == aolab.measures.flicker.Flicker(0.0, 0.0, 1.0)
 
 
+@pytest.mark.filterwarnings("ignore:nothing is drawn")
 def test_bad_requests(lab, boxes):
     frame = lab.render(boxes, "ssao")
     with pytest.raises(aolab.ParameterError, match="1 given, at least 2"):

@@ -34,6 +34,7 @@ def test_the_background_is_nan_in_scalars_and_black_in_light():
     assert np.isnan(frame["ambient_standard_error"][background]).all()
 
 
+@pytest.mark.filterwarnings("ignore:nothing is drawn")
 def test_a_camera_that_sees_nothing_gets_a_frame_all_the_same():
     away = scene(quad((0, 0, 0), (1, 0, 0), (0, 1, 0)), camera=aolab.Camera((0, 0, 9), (0, 0, 20)))
     frame = reference(away, size=SIZE, rays=2)
