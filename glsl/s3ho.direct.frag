@@ -2,16 +2,19 @@
 // Herholz et al. 2012, Eq. 3 and 4: E(P) = Σ c_l(P) · c(P).
 // A lobe's coefficients are its zonal ones times y_i(d): so c_l · c is the windowed transfer's value towards the light.
 // Besides, lights pass their shadow maps, as in pipeline/direct.frag; the paper has none.
-// Inputs: viewZ, viewNormal, albedo, occlusion0 to occlusion3. Output: direct, linear RGB radiance: albedo/π × E.
+// Inputs: viewZ, viewNormal, albedo, occlusion0 to occlusion3; light_share, where `shared_light`. Output: direct, linear RGB radiance: albedo/π × E.
 
 #include "lib/space.glsl"
 #include "lib/lights.glsl"
 #include "s3ho.transfer.glsl"
 #include "lib/constants.glsl"
 
+const bool shared_light;     // multiply by `light_share`
+
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
+uniform sampler2D light_share;
 uniform float light_window;  // bands
 uniform vec4 ray_from_pixel;
 uniform mat4 view_from_world;
@@ -36,5 +39,6 @@ void main() {
         arriving *= lobesShadowOf(i, worldPos, toLight, dot(normal, viewToLight));
         irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
     }
+    if (shared_light) irradiance *= texelFetch(light_share, pixel, 0).rgb;
     direct = vec4(texelFetch(albedo, pixel, 0).rgb / PI * irradiance, 1.0);
 }

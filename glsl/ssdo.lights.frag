@@ -7,23 +7,14 @@
 
 #include "lib/march.glsl"
 #include "lib/lights.glsl"
+#include "lib/segment.glsl"
+#include "lib/fill.glsl"
 
 const int light_steps;   // samples on the way to each light
 
 uniform vec2 light_samples[16];   // of each set of samples: the way's length, in radii, and its first offset, in steps
 
 out vec4 light_share;
-
-// Does nothing on the screen block the way from the receiver towards a light, of length `reach`?
-bool isOpenTo(Receiver receiver, vec3 viewToLight, float reach, float offset) {
-    bool blocked = false;
-    for (int j = 0; j < light_steps; ++j) {
-        Occluder occluder;
-        vec3 samplePos = receiver.viewPos + viewToLight * (reach * (float(j) + offset) / float(light_steps));
-        blocked = isBlocked(receiver, samplePos, thickness * radius, occluder) || blocked;
-    }
-    return !blocked;
-}
 
 void main() {
     Receiver receiver;
@@ -41,7 +32,10 @@ void main() {
         float reach = radius * way.x;
         if (light_kind[i] != DIRECTIONAL) reach = min(reach, distance(light_position[i], worldPos));
         all += irradiance;
-        if (irradiance != vec3(0.0) && isOpenTo(receiver, mat3(view_from_world) * toLight, reach, way.y)) {
+        if (irradiance == vec3(0.0)) continue;
+        vec3 viewToLight = mat3(view_from_world) * toLight;
+        if (!isSegmentOpen(receiver, viewToLight, reach, way.y, light_steps, thickness * radius)) continue;
+        if (isFilledOpen(receiver, tileOf(i, toLight), surfacePos, worldPos, viewToLight, ray_from_pixel)) {
             arriving += irradiance;
         }
     }

@@ -17,7 +17,7 @@ def alternatives(module: type[Parameters], field: str) -> list[Any]:
     bounds = [
         bound for name in ("ge", "le") for one in info.metadata if (bound := getattr(one, name, None)) is not None
     ]
-    numbers: list[Any] = [0.3, 1.7]
+    numbers: list[Any] = [0.3, 1.7] if isinstance(info.default, int | float) else [0.3, 1.7, 32]
     if isinstance(info.default, int | float):
         numbers = [*bounds, info.default * 2, info.default // 2 if isinstance(info.default, int) else info.default / 2]
     numeric = {int, float} & set(kinds(info.annotation))

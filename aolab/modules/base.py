@@ -16,7 +16,7 @@ from .filters import FILTERS, Filter
 from .names import check_outputs, check_parameters
 from .occluders import OCCLUDERS, OccluderKind
 from .parameters import AUTO, Choice, Parameters, is_word, label, parameter, unknown
-from .passes import AMBIENT, DIRECT, Pass, reflect
+from .passes import AMBIENT, DIRECT, FILL, SHARED_DIRECT, Pass, reflect
 from .question import Question
 from .readable import Readable
 
@@ -79,6 +79,22 @@ Senders = Annotated[
     Field(
         description="Share of an occluder in the light: that of its direction (`rays`), or the form factor of a patch "
         "of area π radius² / N, as printed, which is more than the light that there is (`patches`)."
+    ),
+]
+
+ShadowBias = Annotated[
+    Annotated[float, Field(gt=0, le=64)] | Literal["none"],
+    Field(
+        description="Bias of shadow maps, as a multiple of half a texel times the slope; 6 covers the filter's reach, "
+        "`none` shows acne.",
+        json_schema_extra={"unit": "(p/2) tan α"},
+    ),
+]
+ShadowResolution = Annotated[
+    Annotated[int, Field(ge=16, le=8192)] | Literal["auto"],
+    Field(
+        description="Pixels a side of a shadow map; auto is 2048 for up to 4 maps, 1024 for up to 36, and then 512.",
+        json_schema_extra={"unit": "pixels"},
     ),
 ]
 
@@ -151,6 +167,11 @@ class Module(Parameters):
         "Resolution of the estimate as a share of the image's, brought up by joint bilateral upsampling.",
         ge=SCALES[0],
         le=SCALES[1],
+    )
+    shadow_bias: ShadowBias = 6.0
+    shadow_resolution: ShadowResolution = AUTO
+    fill: int = parameter(
+        0, "Samples in the gap that a shadow map's bias leaves: contact shadows; 0 is the map alone.", ge=0, le=64
     )
 
     @classmethod
@@ -267,8 +288,12 @@ class Module(Parameters):
         Each step may read the outputs of those before it. A step that takes samples is an `Estimate`.
         """
         if "irradiance" in self.outputs:
-            return [DIRECT, reflect("irradiance", "ambient")]
-        return [DIRECT, replace(AMBIENT, constants={"occluded": "visibility" in self.outputs})]
+            return [*self.direct(), reflect("irradiance", "ambient")]
+        return [*self.direct(), replace(AMBIENT, constants={"occluded": "visibility" in self.outputs})]
+
+    def direct(self) -> Sequence[Pass]:
+        """The passes of direct light: through shadow maps, and with `fill` also past the screen."""
+        return [FILL, SHARED_DIRECT] if self.fill else [DIRECT]
 
     def bounce(self) -> Estimate | None:
         """An estimate over the lit surfaces (`sender`, RGB radiance) of `bounce`, an irradiance; None for no bounce."""

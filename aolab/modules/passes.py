@@ -8,7 +8,7 @@ from typing import Literal
 from ..gl.source import Constant
 from ..scene.scene import Scene
 from ..scene.view import View, Viewpoint
-from .buffers import LIT
+from .buffers import CONTRACT, LIT
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,8 @@ class GeometryPass(Pass):
 DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": LIT["direct"].format}, {"shared_light": False})
 # the same, times the buffer `light_share`, the share of the lights' irradiance that arrives
 SHARED_DIRECT = replace(DIRECT, constants={"shared_light": True})
+# that share, where samples on the screen fill the gap that the bias of shadow maps leaves (SSDO 2009, section 5)
+FILL = Pass("fill", "pipeline/fill.frag", {"light_share": CONTRACT["light_share"].format})
 AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": LIT["ambient"].format})
 
 

@@ -1,6 +1,7 @@
 """Screen-space spherical harmonic occlusion: visibility and cosine as 16 coefficients, apart from any light."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
@@ -11,7 +12,7 @@ from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clam
 from .buffers import LIT, Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, DIRECT, Pass
+from .passes import AMBIENT, Pass
 from .readable import Readable
 
 OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
@@ -120,8 +121,10 @@ class S3HO(Marched):
         return self.indirect
 
     def lighting(self) -> list[Pass]:
-        lobes = Pass("direct", "s3ho.direct.frag", DIRECT.outputs)
-        passes = [lobes if self.lights == "lobes" else DIRECT]
+        *fills, direct = self.direct()
+        if self.lights == "lobes":
+            direct = replace(direct, shader="s3ho.direct.frag")
+        passes = [*fills, direct]
         passes.append(Pass("ambient", "s3ho.ambient.frag", AMBIENT.outputs))
         if self.indirect:
             passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": LIT["indirect"].format}))

@@ -8,7 +8,7 @@ from ..scene.cones import SLICES, TEXELS, Cones
 from .buffers import Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, DIRECT, Pass
+from .passes import AMBIENT, Pass
 from .readable import Readable
 
 
@@ -74,4 +74,4 @@ class SSBN(Marched):
 
     def lighting(self) -> list[Pass]:
         constants = {"cone_slices": SLICES, "cone_texels": TEXELS, **self._weights}
-        return [DIRECT, Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, constants)]
+        return [*self.direct(), Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, constants)]

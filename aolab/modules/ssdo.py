@@ -12,7 +12,7 @@ from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clam
 from .buffers import CONTRACT, Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, DIRECT, SHARED_DIRECT, Pass
+from .passes import AMBIENT, SHARED_DIRECT, Pass
 
 
 class SSDO(Marched):
@@ -69,7 +69,7 @@ class SSDO(Marched):
         blocked = {"blocked": self.estimator == "blocked"}
         ambient = Pass("ambient", "ssdo.ambient.frag", AMBIENT.outputs, blocked)
         if not self.light_steps:
-            return [DIRECT, ambient]
+            return [*self.direct(), ambient]
         share = {"light_share": "RGBA16F"}
         return [Estimate([Pass("ssdo lights", "ssdo.lights.frag", share)], share), SHARED_DIRECT, ambient]
 

@@ -36,7 +36,7 @@ from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
 from .senders import senders
-from .shadows import ShadowMaps, draw_shadows
+from .shadows import ShadowMaps, ShadowSettings, draw_shadows
 from .state import FrameContext, SurfaceState
 
 DEFAULT_SIZE = (1280, 720)
@@ -212,7 +212,11 @@ class Lab:
         assert scene.environment is not None  # Scene fills it in
         with self._lending(runner):
             tables = self._environments.tables(scene.environment, module.tables())
-            lights = Lights(lighting.lamps(scene, self._shadow_maps(rasterizer)), scene.environment, tables)
+            lights = Lights(
+                lighting.lamps(scene, self._shadow_maps(rasterizer, ShadowSettings.of(module))),
+                scene.environment,
+                tables,
+            )
             if module.lit:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
             lit = lighting.light(state, lights)
@@ -253,11 +257,11 @@ class Lab:
             self._pool.give_back(runner.lent)
             raise
 
-    def _shadow_maps(self, rasterizer: Rasterizer) -> ShadowMaps:
+    def _shadow_maps(self, rasterizer: Rasterizer, settings: ShadowSettings) -> ShadowMaps:
         """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
-        key = (rasterizer.scene.instances, rasterizer.scene.lights, self._programs.generation)
+        key = (rasterizer.scene.instances, rasterizer.scene.lights, settings, self._programs.generation)
         if self._shadows is None or self._shadows[0] != key:
-            self._shadows = key, draw_shadows(rasterizer)
+            self._shadows = key, draw_shadows(rasterizer, settings)
         return self._shadows[1]
 
 

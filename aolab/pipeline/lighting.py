@@ -90,7 +90,8 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
         if isinstance(step, Estimate):
             lit |= estimate(state, step, given)
         else:
-            known = [Bindings("the surfaces", state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
+            surfaces = Bindings("the surfaces", state.large)
+            known = [surfaces, state.occluders.bindings, frame.parameters, frame.samples(frame.seeds[0]), *given]
             lit |= steps(frame, [step], known)
     return lit
 

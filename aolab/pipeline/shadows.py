@@ -1,15 +1,18 @@
 """Shadow maps: every light's tiles in one depth atlas, drawn again only when lights or geometry change."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil, sqrt
 
 import moderngl
 import numpy as np
 
-from ..errors import SceneError
+from ..errors import ParameterError, SceneError
 from ..gl import context
 from ..gl.texture import make, refuse_exhaustion
 from ..maths.transforms import look_along, orthographic, perspective
+from ..modules import Module
+from ..modules.parameters import AUTO
 from ..modules.passes import GeometryPass
 from ..scene.lights import MAX_SHADOW_TILES, DirectionalLight, Light, PointLight, SpotLight
 from ..scene.scene import Scene
@@ -20,7 +23,7 @@ _SHADOWS = GeometryPass("shadows", "pipeline/shadow.frag", {}, vertex="pipeline/
 
 # pixels a side of a tile, by the number of tiles that it is for. SSDO (2009) used 512
 TILE_SIZES = {4: 2048, 36: 1024, 256: 512}
-SLOPE_BIAS, CONSTANT_BIAS = 3.0, 4.0  # glPolygonOffset: the filter reaches 1.25 texels in x and in y
+CONSTANT_BIAS = 4.0  # glPolygonOffset, in the least steps of depth
 
 # right-handed looks of a point light's six faces, in the order of `cubeFace` in glsl/lib/light.glsl
 _CUBE = (
@@ -37,7 +40,8 @@ _CUBE = (
 class ShadowMaps:
     """The shadow maps of all lights: tiles of `atlas`, a depth texture.
 
-    `table` has a row for each tile: the four columns of its clip_from_world, then its corner x, y and its size, in uv.
+    `table` has a row for each tile: the four columns of its clip_from_world; then its corner x, y and its size, in uv,
+    and its bias at the distance 1 for a slope of 1, in scene units (glsl/lib/shadow_tiles.glsl).
     """
 
     atlas: moderngl.Texture
@@ -63,9 +67,23 @@ def light_projections(light: Light, scene: Scene) -> list[tuple[np.ndarray, np.n
     return [(look_along(position, np.array(look), np.array(up)), perspective(1, 1, near, far)) for look, up in _CUBE]
 
 
-def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
+@dataclass(frozen=True)
+class ShadowSettings:
+    """`resolution`: pixels a side of a tile, None by `TILE_SIZES`; `slope_bias`: in texels times tan α; 0 is none."""
+
+    resolution: int | None = None
+    slope_bias: float = 3.0
+
+    @classmethod
+    def of(cls, module: Module) -> "ShadowSettings":
+        """The settings that a module states: its bias is in halves of a texel."""
+        resolution = None if module.shadow_resolution == AUTO else module.shadow_resolution
+        return cls(resolution, 0.0 if module.shadow_bias == "none" else module.shadow_bias / 2)
+
+
+def draw_shadows(rasterizer: Rasterizer, settings: ShadowSettings) -> ShadowMaps:
     """Draw the shadow maps of all lights. Raises `SceneError` for more tiles than an atlas has room for."""
-    gl, scene = context.get(), rasterizer.scene
+    scene = rasterizer.scene
     projections: list[tuple[np.ndarray, np.ndarray]] = []
     first_tile = []
     for light in scene.lights:
@@ -78,9 +96,29 @@ def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
             f"scene '{scene.name}': its {len(scene.lights)} lights ({points} of them points, six tiles each) need "
             f"{count} shadow tiles; the limit is {MAX_SHADOW_TILES}. Set shadow=False on the lesser lights"
         )
+    auto = next(size for most, size in TILE_SIZES.items() if count <= most) if count else 1
+    atlas, table = draw_tiles(
+        rasterizer, projections, (settings.resolution or auto) if count else 1, settings.slope_bias
+    )
+    return ShadowMaps(atlas, table, tuple(first_tile))
+
+
+def draw_tiles(
+    rasterizer: Rasterizer, projections: Sequence[tuple[np.ndarray, np.ndarray]], tile: int, slope_bias: float
+) -> tuple[moderngl.Texture, moderngl.Texture]:
+    """The atlas of the depths that the projections see, `tile` pixels a side each, and its table (`ShadowMaps`).
+
+    Raises `ParameterError` for an atlas that is larger than the driver allows.
+    """
+    gl, count = context.get(), len(projections)
     side = max(1, ceil(sqrt(count)))
-    tile = next(size for most, size in TILE_SIZES.items() if count <= most) if count else 1
     width = side * tile
+    limit = gl.info["GL_MAX_TEXTURE_SIZE"]
+    if width > limit:
+        raise ParameterError(
+            f"{count} shadow maps of {tile} pixels a side need an atlas of {width}x{width}; this driver has at most "
+            f"{limit}x{limit}. At most {(limit // tile) ** 2} such maps fit, or {count} maps of {limit // side} pixels"
+        )
     atlas = gl.depth_texture((width, width))
     refuse_exhaustion(f"shadow maps of {width}x{width}")
     atlas.compare_func = "<="
@@ -91,11 +129,12 @@ def draw_shadows(rasterizer: Rasterizer) -> ShadowMaps:
         for index, (view, clip) in enumerate(projections)
     ]
     if views:
-        gl.polygon_offset = SLOPE_BIAS, CONSTANT_BIAS
+        gl.polygon_offset = slope_bias, CONSTANT_BIAS if slope_bias else 0.0
         rasterizer.triangles(_SHADOWS, views, depth=atlas)
         gl.polygon_offset = 0.0, 0.0
     table = np.zeros((max(1, count), 5, 4), np.float32)  # GL has no empty texture
     for row, (view, clip) in enumerate(projections):
         table[row, :4] = (clip @ view).T
-        table[row, 4, :3] = row % side / side, row // side / side, 1 / side
-    return ShadowMaps(atlas, make((5, len(table)), "RGBA32F", table.tobytes()), tuple(first_tile))
+        texel = 2 / clip[0, 0] / tile  # its width, at the distance 1 if the rays are not parallel
+        table[row, 4] = row % side / side, row // side / side, 1 / side, slope_bias * texel
+    return atlas, make((5, len(table)), "RGBA32F", table.tobytes())

@@ -1,18 +1,16 @@
 // The scene's lights and their shadow maps, by index i from 0 to lights - 1.
 
-#include "lib/light.glsl"
+#include "lib/shadow_tiles.glsl"
 
 const int lights;
 const int light_slots;   // max(lights, 1): GLSL has no empty arrays
 
-uniform sampler2DShadow shadow_atlas;
 uniform int light_kind[light_slots];
 uniform vec3 light_position[light_slots];
 uniform vec3 light_direction[light_slots];
 uniform vec3 light_color[light_slots];
 uniform vec2 light_spot_cos[light_slots];
 uniform int light_tile[light_slots];            // the light's first shadow tile, or -1 without shadow
-uniform sampler2D shadow_table;   // a row a tile: the four columns of its clip_from_world; its corner and size in the atlas
 
 // The unit direction towards light `i`, world space. `arriving` is the factor from light_color[i] to irradiance,
 // without shadows.
@@ -20,14 +18,16 @@ vec3 towardsLightAt(int i, vec3 worldPos, out float arriving) {
     return towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i], worldPos, arriving);
 }
 
+// The shadow tile of light `i` that sees `worldPos`; -1 for a light without shadow map.
+int tileOf(int i, vec3 toLight) {
+    int tile = light_tile[i];
+    return tile >= 0 && light_kind[i] == POINT ? tile + cubeFace(-toLight) : tile;
+}
+
 // The unshadowed share of light `i` at `worldPos`; 1 for a light without shadow map. `toLight`: unit, world space.
 float shadowOf(int i, vec3 worldPos, vec3 toLight) {
-    int tile = light_tile[i];
-    if (tile < 0) return 1.0;
-    if (light_kind[i] == POINT) tile += cubeFace(-toLight);
-    mat4 shadowFromWorld = mat4(texelFetch(shadow_table, ivec2(0, tile), 0), texelFetch(shadow_table, ivec2(1, tile), 0),
-                                texelFetch(shadow_table, ivec2(2, tile), 0), texelFetch(shadow_table, ivec2(3, tile), 0));
-    return shadowAt(shadow_atlas, shadowFromWorld, texelFetch(shadow_table, ivec2(4, tile), 0).xyz, worldPos);
+    int tile = tileOf(i, toLight);
+    return tile < 0 ? 1.0 : tileShadow(tile, worldPos);
 }
 
 // The unshadowed share of a light that is a lobe of spherical harmonics; `facing` = dot(normal, toLight). A lobe also

@@ -16,6 +16,7 @@ from aolab.scene.scene import Scene
 TRIANGLES = {
     "atrium": (80_000, 160_000),
     "boxes": (36, 1_000),
+    "coins": (3_000, 50_000),
     "colonnade": (20_000, 150_000),
     "cornell": (60, 500),
     "skyscrapers": (5_000, 100_000),
@@ -24,6 +25,7 @@ TRIANGLES = {
 OUT_OF_RANGE = {
     "atrium": {"detail": 5},
     "boxes": {"light": -1.0},
+    "coins": {"sun_elevation": 0.0},
     "colonnade": {"count": 1},
     "cornell": {"lamp": -0.5},
     "skyscrapers": {"sun_elevation": 0.0},
