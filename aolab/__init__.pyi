@@ -46,5 +46,7 @@ from .scene.mesh import Texture as Texture
 from .scene.scene import Instance as Instance
 from .scene.scene import Scene as Scene
 from .studies import compare_modules as compare_modules
+from .studies.film import animate as animate
+from .studies.sweep.api import sweep as sweep
 from .truth import reference as reference
 from .version import __version__ as __version__

@@ -10,6 +10,12 @@ import pytest
 from aolab import ParameterError, extras
 
 
+@pytest.fixture(autouse=True)
+def no_notebook(monkeypatch):
+    """Tests of notebooks import ipykernel into this process; the commands then suit a notebook."""
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+
+
 def test_the_command_runs_pip_of_this_python(monkeypatch):
     monkeypatch.setattr(sys, "executable", "/a folder/python")
     assert extras.install_command("optuna") == "'/a folder/python' -m pip install optuna"

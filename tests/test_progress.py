@@ -2,6 +2,7 @@
 
 import io
 import re
+import sys
 
 import pytest
 
@@ -23,6 +24,7 @@ class Stream(io.StringIO):
 def written(monkeypatch):
     """The text that four steps write: `written(terminal=False)`."""
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)  # tests of notebooks import it into this process
 
     def run(terminal: bool, **options) -> str:
         stream = Stream(terminal)

@@ -106,6 +106,9 @@ class Programs:
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
         self._in_text: dict[str | Path, Declared] = {}
 
+    def __len__(self) -> int:
+        return len(self._programs)
+
     def get(
         self,
         fragment: str | Path,

@@ -48,9 +48,9 @@ def smaller(picture: "Image.Image", width: int = WIDEST) -> "Image.Image":
     return picture.resize((width, round(picture.height * width / picture.width)), Image.Resampling.LANCZOS)
 
 
-def img(picture: "Image.Image | np.ndarray", alt: str, style: str = "max-width: 100%") -> str:
-    """An <img> with the picture in it, as PNG."""
-    data = base64.b64encode(png(picture)).decode()
+def img(picture: "Image.Image | np.ndarray | bytes", alt: str, style: str = "max-width: 100%") -> str:
+    """An <img> with the picture in it, as PNG. `picture` may be the bytes of a PNG file."""
+    data = base64.b64encode(picture if isinstance(picture, bytes) else png(picture)).decode()
     return f'<img alt="{escape(alt)}" style="{style}" src="data:image/png;base64,{data}">'
 
 

@@ -59,6 +59,11 @@ class Lab:
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
 
+    @property
+    def programs_compiled(self) -> int:
+        """The number of shader programs that this lab has compiled and keeps."""
+        return len(self._programs)
+
     @handed
     def __repr__(self) -> str:
         width, height = self.size

@@ -5,6 +5,7 @@ from typing import Annotated
 import typer
 
 from ..version import __version__
+from .animate import animate
 from .bench import bench
 from .compare import compare
 from .doctor import doctor
@@ -13,9 +14,10 @@ from .reference import reference
 from .render import render
 from .reproduce import reproduce
 from .scenes import scenes
+from .sweep import sweep
 from .tune import tune
 
-COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, reproduce)
+COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate)
 
 app = typer.Typer(
     name="aolab",
