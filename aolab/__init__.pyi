@@ -17,6 +17,7 @@ from .modules import S3HO as S3HO
 from .modules import SSAO as SSAO
 from .modules import SSBN as SSBN
 from .modules import SSDO as SSDO
+from .modules import AmbientTransfer as AmbientTransfer
 from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
 from .modules.parameters import parameter as parameter

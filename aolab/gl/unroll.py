@@ -1,8 +1,8 @@
 """Unrolls loops of shaders: `#pragma unroll` before a `for` whose bounds are constants.
 
-Mesa's software renderer reads `kernel[i]` with a constant index much faster than with a loop's, and tests no condition
-between the copies. The pragma changes no result. A line `#pragma unroll off` anywhere in a shader or its includes leaves
-all its loops as they are.
+Mesa's software renderer reads `kernel[i]` with a constant index much faster than with the index of a loop, and tests no
+condition between the copies. The pragma changes no result. A line `#pragma unroll off` anywhere in a shader or its
+includes leaves all its loops as they are.
 """
 
 import os

@@ -5,6 +5,7 @@ from types import ModuleType
 from typing import Literal
 
 from ..pictures.html import Listing
+from .ambient_transfer import AmbientTransfer
 from .base import Module
 from .buffers import BUFFERS, Buffer
 from .find import find
@@ -14,7 +15,9 @@ from .ssao import SSAO
 from .ssbn import SSBN
 from .ssdo import SSDO
 
-MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO, S3HO, SSBN)}
+MODULES: dict[str, type[Module]] = {
+    module.name: module for module in (Unoccluded, SSAO, SSDO, S3HO, SSBN, AmbientTransfer)
+}
 
 
 def known_buffers() -> dict[str, Buffer]:
@@ -22,7 +25,9 @@ def known_buffers() -> dict[str, Buffer]:
     return BUFFERS | {row.name: row for module in MODULES.values() for row in module.buffers}
 
 
-ModuleName = Literal["none", "ssao", "ssdo", "s3ho", "ssbn"]  # the same names, for editors; a test compares them
+ModuleName = Literal[
+    "none", "ssao", "ssdo", "s3ho", "ssbn", "ambient_transfer"
+]  # the same names, for editors; a test compares them
 
 
 class _Callable(ModuleType):
@@ -33,4 +38,16 @@ class _Callable(ModuleType):
 
 sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
 
-__all__ = ["MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "ModuleName", "Unoccluded", "find", "known_buffers"]
+__all__ = [
+    "MODULES",
+    "S3HO",
+    "SSAO",
+    "SSBN",
+    "SSDO",
+    "AmbientTransfer",
+    "Module",
+    "ModuleName",
+    "Unoccluded",
+    "find",
+    "known_buffers",
+]

@@ -113,18 +113,19 @@ def auto_radius(scene: Scene) -> float:
 
 SCALES = (0.125, 1.0)
 
+
+def by_name(table: Mapping[str, type[Choice]], base: type[Choice]) -> Any:
+    """A name of the table, or a choice of one's own; the JSON schema lists the names."""
+    own = WrapValidator(lambda value, named: value if isinstance(value, base) else named(value))
+    return Annotated[Literal[tuple(table)], own]  # pyright: ignore[reportInvalidTypeForm]
+
+
 if TYPE_CHECKING:
     OccludersByName = str | OccluderKind
     FilterByName = str | Filter
 else:
-
-    def _by_name(table: Mapping[str, type[Choice]], base: type[Choice]) -> Any:
-        """A name of the table, or a choice of one's own; the JSON schema lists the names."""
-        own = WrapValidator(lambda value, named: value if isinstance(value, base) else named(value))
-        return Annotated[Literal[tuple(table)], own]
-
-    OccludersByName = _by_name(OCCLUDERS, OccluderKind)
-    FilterByName = _by_name(FILTERS, Filter)
+    OccludersByName = by_name(OCCLUDERS, OccluderKind)
+    FilterByName = by_name(FILTERS, Filter)
 
 
 class Module(Parameters):

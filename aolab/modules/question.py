@@ -15,7 +15,7 @@ class Question:
     - `radius` (scene units; None is unlimited): occluders farther away do not count;
     - `falloff`: how an occluder's influence fades within the radius, for visibility and all that it weights. A number
       in [0, 1] is the modules' smoothstep over the outer share of the radius; a name is a curve of
-      `aolab.maths.fading.openness`;
+      `aolab.maths.fading.openness`; a tuple is a curve's values at equal steps from 0 to the radius;
     - `measure`: the same for `obscurance` and `transfer`, μ of the paper; `sigma` (1/radius) is of `exponential` alone;
     - `spread` in (0, 1]: the half-angle of the cone of directions around the normal, in right angles. Each integral is
       the cosine-weighted mean over the cone, so that an open point has the visibility 1;
@@ -38,6 +38,8 @@ class Question:
         if self.radius is not None and not (isinstance(self.radius, (int, float)) and self.radius > 0):
             raise ParameterError(f"radius = {self.radius!r} is not a length above 0 (None is unlimited)")
         for name in ("falloff", "measure"):
+            if isinstance(getattr(self, name), list):  # as JSON has tuples
+                object.__setattr__(self, name, tuple(getattr(self, name)))
             self._check_fading(name, getattr(self, name))
         if not 0 < self.sigma < inf:
             raise ParameterError(f"sigma = {self.sigma!r} is not a number above 0")
@@ -50,6 +52,10 @@ class Question:
         if isinstance(fading, str):
             if fading not in CURVES:
                 raise ParameterError(f"{name} = {fading!r} is unknown{suggestion(fading, CURVES)}")
+        elif isinstance(fading, tuple):
+            grows = len(fading) > 1 and fading[0] == 0 and fading[-1] == 1 and list(fading) == sorted(fading)
+            if not grows:
+                raise ParameterError(f"{name} = {fading!r:.80} is not a list of numbers that grow from 0 to 1")
         elif not 0 <= fading <= 1:
             raise ParameterError(f"{name} = {fading!r} is outside [0, 1]")
 

@@ -3,9 +3,10 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..gl.bindings import Bindings
+from ..gl.bindings import Bindings, joined
 from ..modules import Module
 from ..modules.filters import Filter
+from ..modules.measures import Measure
 from ..modules.occluders.base import OccluderKind, Occluders
 from ..scene.scene import Scene
 from ..scene.view import View
@@ -54,9 +55,15 @@ class FrameContext:
 
     @property
     def parameters(self) -> Bindings:
-        """The module's numbers, as uniforms and as constants."""
-        numbers = self.module.numbers()
-        return Bindings(f"the parameters of {self.module.label()}", uniforms=numbers, constants=numbers)
+        """The module's numbers, as uniforms and as constants, and all that its measure gives."""
+        numbers, owner = self.module.numbers(), f"the parameters of {self.module.label()}"
+        own = Bindings(owner, uniforms=numbers, constants=numbers)
+        if "measure" not in self.module.choices:
+            return own
+        measure = self.module.chosen("measure")
+        assert isinstance(measure, Measure)
+        both = joined([own, measure.bindings()], owner)
+        return Bindings(owner, both.textures, both.uniforms, both.constants, both.includes)
 
     def samples(self, seed: int) -> Bindings:
         """The sample set of one seed."""

@@ -19,16 +19,21 @@ uniform vec4 ray_from_pixel;
 
 const float OPEN = 2.0;   // larger than any share of a reach
 
-// Computes the receiver of this fragment. Returns false in the background.
-bool receiverHere(out Receiver receiver) {
+// Computes the receiver of this fragment, for points within `reach`, scene units. Returns false in the background.
+bool receiverHere(out Receiver receiver, float reach) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     float centreZ = texelFetch(viewZ, pixel, 0).r;
     if (isBackground(centreZ)) return false;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    viewPos += normal * liftOff(bias * radius, radius, viewPos, ray_from_pixel);
+    viewPos += normal * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
     receiver = receiverAt(pixel, viewPos, normal, texel_size);
     return true;
+}
+
+// The same for points within the radius.
+bool receiverHere(out Receiver receiver) {
+    return receiverHere(receiver, radius);
 }
 
 // Is point `j` on direction `i` blocked? `along`: its distance as a share of the reach; `occluder`: the blocker.

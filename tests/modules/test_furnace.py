@@ -28,7 +28,9 @@ def physical(module: type[Module]) -> list[dict[str, Any]]:
 
 
 def bounces(module: type[Module]) -> list[dict[str, Any]]:
-    """Each single choice that turns a bounce on."""
+    """Each single choice that turns a bounce on; none, for a module that always has one."""
+    if module().sends():
+        return [{}]
     return [way for way in physical(module) if len(way) == 1 and module(**way).sends()]
 
 
@@ -60,7 +62,7 @@ def test_a_bounce_replaces_most_of_the_blocked_light(lab, furnace, name):
     """More than half of the light that is missing in dark corners."""
     for way in bounces(MODULES[name]):
         frame = lab.render(furnace, name, size=(128, 96), directions=16, steps=8, **radius_of(name), **way)
-        dark = frame.mask & (frame["ambient"][..., 0] < 0.8)
+        dark = frame.mask & (frame["ambient"][..., 0] < np.quantile(frame["ambient"][frame.mask], 0.05))
         assert dark.sum() > 100
         assert frame["indirect"][dark].mean() > 0.5 * (1 - frame["ambient"][dark]).mean(), way
 

@@ -37,7 +37,7 @@ def test_every_module_has_a_question_once_it_is_resolved(name, boxes):
     question = module.question()
     assert question.limited_senders
     assert question.radius == getattr(module, "radius", None)
-    assert question.falloff == getattr(module, "falloff", 0.0)
+    assert question.falloff == getattr(module, "measure", getattr(module, "falloff", 0.0))
 
 
 def test_a_frame_carries_the_question(lab, boxes):
