@@ -11,7 +11,7 @@ from .buffers import LIT, Buffer
 from .estimate import Estimate
 from .measures import MEASURES, Measure
 from .parameters import parameter
-from .passes import DIRECT, Pass
+from .passes import Pass
 from .question import Question
 from .readable import Readable
 
@@ -92,7 +92,7 @@ class AmbientTransfer(Module):
         return Estimate([], {})  # the light has to be there before: see `lighting`
 
     def lighting(self) -> Sequence[Pass | Estimate]:
-        steps: list[Pass | Estimate] = [DIRECT]
+        steps: list[Pass | Estimate] = [*self.direct()]
         if self.albedo_source == "radiance":
             share = Pass("reflected share", "ambient_transfer.share.frag", {"reflected_share": "RGBA16F"})
             steps += [share, Estimate(self.passes(), TERMS)]
