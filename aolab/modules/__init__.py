@@ -8,13 +8,14 @@ from ..pictures.html import Listing
 from .base import Module
 from .buffers import BUFFERS, Buffer
 from .find import find
+from .hao import HAO
 from .none import Unoccluded
 from .s3ho import S3HO
 from .ssao import SSAO
 from .ssbn import SSBN
 from .ssdo import SSDO
 
-MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO, S3HO, SSBN)}
+MODULES: dict[str, type[Module]] = {module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN)}
 
 
 def known_buffers() -> dict[str, Buffer]:
@@ -22,7 +23,7 @@ def known_buffers() -> dict[str, Buffer]:
     return BUFFERS | {row.name: row for module in MODULES.values() for row in module.buffers}
 
 
-ModuleName = Literal["none", "ssao", "ssdo", "s3ho", "ssbn"]  # the same names, for editors; a test compares them
+ModuleName = Literal["none", "ssao", "ssdo", "hao", "s3ho", "ssbn"]  # the same names, for editors; a test compares them
 
 
 class _Callable(ModuleType):
@@ -33,4 +34,6 @@ class _Callable(ModuleType):
 
 sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
 
-__all__ = ["MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "ModuleName", "Unoccluded", "find", "known_buffers"]
+__all__ = [
+    "HAO", "MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "Module", "ModuleName", "Unoccluded", "find", "known_buffers",
+]  # fmt: skip

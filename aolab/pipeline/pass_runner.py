@@ -68,10 +68,10 @@ class PassRunner:
             self._fullscreen(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
-    def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN) -> Program:
+    def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:
         """The pass's program, with these constants and includes."""
         return self.programs.get(
-            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes
+            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes, geometry
         )
 
     def framebuffer(

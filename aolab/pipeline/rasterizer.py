@@ -107,7 +107,7 @@ class Rasterizer:
         own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
         views = [Bindings("the view", uniforms=one.uniforms, constants=one.constants) for one in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
-        program = runner.program(step, given[0], step.vertex)
+        program = runner.program(step, given[0], step.vertex, step.geometry)
         tested = step.combine == "nearest"
         depth = (depth or self.depth.of(size)) if tested else None
         targets = runner.targets(step, size)
