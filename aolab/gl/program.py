@@ -217,6 +217,13 @@ def _explain(message: str, stages: Mapping[str, Source], fragment: Source) -> st
     head = message.splitlines()[:4]
     stage = next((source for name, source in stages.items() if name in head), fragment)
     report = [line for line in message.splitlines() if line.strip() and set(line.strip()) != {"="}]
-    titles = ("GLSL Compiler failed", "GLSL Linker failed", "vertex_shader", "geometry_shader", "fragment_shader", "Program")
+    titles = (
+        "GLSL Compiler failed",
+        "GLSL Linker failed",
+        "vertex_shader",
+        "geometry_shader",
+        "fragment_shader",
+        "Program",
+    )
     detail = "\n".join(line for line in report if line.strip() not in titles)
     return f"{stage.name} does not compile:\n{stage.locate(detail)}"

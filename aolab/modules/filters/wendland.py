@@ -16,7 +16,10 @@ class Wendland(Filter):
 
     filter_size: int = parameter(16, "Window of the filter, in pixels of the image.", ge=2, le=64)
     filter_distance: float = parameter(
-        0.05, "Distance in space beyond which a neighbour has no weight, as a share of its viewing distance.", gt=0, le=1
+        0.05,
+        "Distance in space beyond which a neighbour has no weight, as a share of its viewing distance.",
+        gt=0,
+        le=1,
     )
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:

@@ -22,14 +22,14 @@ ALONG = (np.eye(3), np.array([[0, 1, 0], [0, 0, 1], [1, 0, 0]]), np.array([[0, 0
 class Voxels(OccluderKind):
     """A grid of `voxels`³ bits around the scene (Eisemann and Décoret 2006; HAO, Reinbothe et al. 2009, section 5).
 
-    An orthographic camera draws all triangles once, without a depth test; each fragment sets the bits of the slices that it
-    spans. Triangles that this camera sees edge-on leave no fragment, so the grid is turned by a random rotation. With
-    `voxel_axes` 3, each triangle is drawn along the axis that its normal is nearest to: no hole is left.
+    An orthographic camera draws all triangles once, without a depth test. Each fragment sets the bits of the slices
+    that it spans. Triangles that this camera sees edge-on leave no fragment, so the grid is turned by a random rotation.
+    With `voxel_axes` 3, each triangle is drawn along the axis that its normal is nearest to: no hole is left.
     """
 
     name = "voxels"
     shader = "occluders/voxels.glsl"
-    uniforms = ("voxel_from_view", "view_from_voxel", "voxel_word_columns")
+    uniforms = ("voxel_from_view", "view_from_voxel")
 
     voxels: int = parameter(256, "Voxels along each side of the grid; a multiple of 32.", ge=32, le=1024)
     voxel_axes: Literal[1, 3] = parameter(1, "Axes that triangles are drawn along: one, as in the paper, or three.")
