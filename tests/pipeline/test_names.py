@@ -33,6 +33,7 @@ def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
         {"occluders": "layers"},
         {"occluders": "views", "view_layers": 2},
         {"filter": "bilateral", "scale": 0.5},
+        {"occluders": "voxels", "filter": "wendland"},
     ):
         frame = given(lab, scene, monkeypatch, "ssdo", bounces=1, **settings)
         for owner, names in frame.items():
