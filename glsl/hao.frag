@@ -9,6 +9,7 @@
 // Output:  visibility, in [0, 1].
 
 #include "lib/space.glsl"
+#include "lib/filter.glsl"
 #include "lib/receiver.glsl"
 #include "lib/wendland.glsl"
 #include "lib/hash.glsl"
@@ -16,16 +17,26 @@
 
 const int directions;
 const int steps;
+const bool lifted;               // off the surface, for occluders in pixels
 
 uniform float radius;            // d_max, scene units
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
-uniform mat4 world_from_view;
 
 out float visibility;
 
 // The side of a cell of the noise, in radii: some pixels wide, so that a small motion of the camera finds the same cell.
 const float NOISE_CELL = 0.05;
+
+// Is the surface seen so nearly edge-on that its depth in a smaller picture may be off its plane? The smaller picture follows
+// the plane from the nearest pixel's centre, which is up to half a pixel away, but by no more than MOST (pipeline/shrink.frag).
+const float MOST = 0.02;
+
+bool isEdgeOn(vec3 normal, vec3 viewPos) {
+    float across = 0.5 * dot(abs(normal.xy), ray_from_pixel.xy);
+    if (orthographic) return across > MOST * COT_22_5 * -ray_from_pixel.w * abs(normal.z);
+    return across > MOST * abs(dot(normal, viewPos / viewPos.z));
+}
 
 void main() {
     visibility = 1.0;
@@ -34,8 +45,8 @@ void main() {
     if (isBackground(centreZ)) return;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    vec3 lifted = viewPos + normal * liftOff(0.0, radius, viewPos, ray_from_pixel);
-    Receiver receiver = receiverAt(pixel, lifted, normal, texel_size);
+    float lift = lifted || isEdgeOn(normal, viewPos) ? liftOff(0.0, radius, viewPos, ray_from_pixel) : 0.0;
+    Receiver receiver = receiverAt(pixel, viewPos + normal * lift, normal, texel_size);
 
     vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;
     vec3 worldNormal = mat3(world_from_view) * normal;

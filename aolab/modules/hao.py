@@ -5,6 +5,8 @@ from typing import ClassVar
 from ..maths.sampling import uniform_cone
 from .base import Directions, FilterByName, Module, OccludersByName, Radius, Steps
 from .parameters import parameter
+from .passes import Pass
+from .question import Question
 
 
 class HAO(Module):
@@ -29,6 +31,13 @@ class HAO(Module):
     occluders: OccludersByName = parameter("voxels", "The occluders: a grid of `voxels`, or another kind.")
     filter: FilterByName = parameter("wendland", "Noise removal: the paper's separable bilateral filter, or another.")
     scale: float = parameter(0.5, "Resolution of the estimate as a share of the image's.", ge=0.125, le=1)
+
+    def question(self) -> Question:
+        values = self.model_dump()
+        return Question(values["radius"], "wendland", spread=values["spread"])
+
+    def passes(self) -> list[Pass]:
+        return [Pass("hao", self.shader, self.outputs, {"lifted": self.occluders != "voxels"})]
 
     def samples(self, seed: int) -> dict[str, bytes]:
         return {"kernel": uniform_cone(self.directions, seed, self.spread).tobytes()}

@@ -1,6 +1,6 @@
 """Draws the scene's triangles: G-buffers, depth layers, and the geometry passes of modules and occluder kinds."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 
 import moderngl
@@ -92,6 +92,10 @@ class Rasterizer:
     def run(self, step: Pass, bindings: Iterable[Bindings], size: Size) -> Buffers:
         """The outputs of a full-screen pass."""
         return self.runner.run(step, bindings, size)
+
+    def kept(self, name: str, key: object, make: Callable[[], Buffers]) -> Buffers:
+        """The textures that `make` returns, kept between frames: see `PassRunner.kept`."""
+        return self.runner.kept(name, key, make)
 
     def triangles(
         self,

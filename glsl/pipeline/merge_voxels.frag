@@ -1,33 +1,30 @@
-// Packs the voxels' bits of three views, along the grid's z, x and y axis, into single words: a voxel is set that any of the
-// views has set. Inputs: bits0_i (along z), bits1_i (along x), bits2_i (along y), RGBA32UI. Output: word, as pack_voxels.frag.
+// Merges the words of three views, along the grid's z, x and y axis: a voxel is set that any of the views has set.
+// Inputs:  words0 (along z), words1 (along x), words2 (along y), R32UI, each packed along its own axis.
+// Output:  word, R32UI, packed along z (lib/voxel_words.glsl).
 
 #include "lib/voxel_words.glsl"
 
-uniform usampler2D bits1_0;
-uniform usampler2D bits1_1;
-uniform usampler2D bits2_0;
-uniform usampler2D bits2_1;
+uniform usampler2D words0;
+uniform usampler2D words1;
+uniform usampler2D words2;
 
 out uint word;
 
-// Bit `slice` of a view with at most two targets.
-uint bitOf(usampler2D first, usampler2D second, ivec2 texel, int slice) {
-    uvec4 four = slice < 128 ? texelFetch(first, texel, 0) : texelFetch(second, texel, 0);
-    return (four[(slice >> 5) & 3] >> uint(slice & 31)) & 1u;
+uint bitOf(usampler2D words, ivec2 place, int slice) {
+    return (texelFetch(words, wordAt(place, slice >> 5), 0).r >> uint(slice & 31)) & 1u;
 }
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    ivec2 tile = pixel / slices, place = pixel - tile * slices;
-    int index = tile.y * columns + tile.x;
+    ivec2 place;
+    int index;
     word = 0u;
-    if (index * 32 >= slices) return;
-    word = wordAlongZ(place, index);
+    if (!isWord(ivec2(gl_FragCoord.xy), place, index)) return;
+    word = texelFetch(words0, ivec2(gl_FragCoord.xy), 0).r;
     int last = slices - 1;
     for (int i = 0; i < 32; ++i) {
-        int z = 32 * index + i;  // the grid's z grows away from the camera, so each view's last axis is mirrored
-        uint alongX = bitOf(bits1_0, bits1_1, ivec2(place.y, last - z), last - place.x);
-        uint alongY = bitOf(bits2_0, bits2_1, ivec2(last - z, place.x), last - place.y);
+        int z = 32 * index + i;  // z grows away from the camera, so each view's last axis is mirrored
+        uint alongX = bitOf(words1, ivec2(place.y, last - z), last - place.x);
+        uint alongY = bitOf(words2, ivec2(last - z, place.x), last - place.y);
         word |= (alongX | alongY) << uint(i);
     }
 }

@@ -8,11 +8,11 @@ in mat4 world_from_local;
 
 uniform mat4 clip_from_world;
 
-out vec2 cornerUv;
-out float cornerAlpha;
+out vec2 vertexUv;
+out float vertexAlpha;
 
 void main() {
-    cornerUv = texture_uv;
-    cornerAlpha = vertex_color.a;
+    vertexUv = texture_uv;
+    vertexAlpha = vertex_color.a;
     gl_Position = clip_from_world * (world_from_local * vec4(local_position, 1.0));
 }

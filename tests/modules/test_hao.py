@@ -31,7 +31,7 @@ def test_a_ceiling_is_the_integral_of_eq_2(lab, spread):
     height, radius = 0.5, 1.0
     ceiling = quad((-6, height, -6), (12, 0, 0), (0, 0, 12), name="ceiling")
     scene = of(floor(6.0), ceiling, camera=Camera((0, 0.25, 1.5), (0, 0, 0), fov=2))
-    settings = {"voxels": 1024, "steps": 64, "directions": 64, "scale": 1.0, "filter": "none", "spread": spread}
+    settings = {"voxels": 512, "steps": 64, "directions": 64, "scale": 1.0, "filter": "none", "spread": spread}
     frame = lab.render(scene, "hao", radius=radius, size=(32, 24), accumulate=8, **settings)
     cosine = (np.arange(100_000) + 0.5) / 100_000
     cosine = cosine[cosine >= np.cos(spread * np.pi / 2)]
