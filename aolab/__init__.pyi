@@ -13,6 +13,7 @@ from .measures import Comparison as Comparison
 from .measures import compare as compare
 from .measures import relighting_error as relighting_error
 from .measures.explain import explain as explain
+from .modules import HAO as HAO
 from .modules import S3HO as S3HO
 from .modules import SSAO as SSAO
 from .modules import SSBN as SSBN

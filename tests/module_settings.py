@@ -21,8 +21,9 @@ def alternatives(module: type[Parameters], field: str) -> list[Any]:
     if isinstance(info.default, int | float):
         numbers = [*bounds, info.default * 2, info.default // 2 if isinstance(info.default, int) else info.default / 2]
     numeric = {int, float} & set(kinds(info.annotation))
+    words = ["scene", "wall"] if str in kinds(info.annotation) else []  # names of a scene's objects
     allowed = []
-    for value in [*choices, *(numbers if numeric else [])]:
+    for value in [*words, *choices, *(numbers if numeric else [])]:
         try:
             if getattr(module(**{field: value}), field) != info.default:
                 allowed.append(value)

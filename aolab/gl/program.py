@@ -90,10 +90,11 @@ class Request:
     aliases: Mapping[str, str]
     outputs: tuple[str, ...] | None
     optional: frozenset[str]
+    geometry: str = ""
 
     @property
     def sources(self) -> tuple[object, ...]:
-        return self.vertex, self.fragment, tuple(sorted(self.aliases.items())), self.outputs
+        return self.vertex, self.geometry, self.fragment, tuple(sorted(self.aliases.items())), self.outputs
 
 
 class Programs:
@@ -117,6 +118,7 @@ class Programs:
         vertex: str = FULLSCREEN,
         outputs: Sequence[str] | None = None,
         optional: Collection[str] = (),
+        geometry: str = "",
     ) -> Program:
         """The program for these sources, compiled when first asked for. Raises `ShaderError`.
 
@@ -124,7 +126,7 @@ class Programs:
         `optional`. More samplers than OpenGL 3.3 guarantees are an error on every driver.
         """
         wanted = None if outputs is None else tuple(outputs)
-        request = Request(vertex, fragment, constants or {}, aliases or {}, wanted, frozenset(optional))
+        request = Request(vertex, fragment, constants or {}, aliases or {}, wanted, frozenset(optional), geometry)
         if request.sources not in self._declared:
             return self._keep(_compile(request))
         key = self._key(request)
@@ -172,15 +174,21 @@ class Programs:
 def _compile(request: Request) -> Program:
     vertex = assemble(request.vertex, request.constants, request.aliases)
     fragment = assemble(request.fragment, request.constants, request.aliases)
-    stamps = {path: _stamp(path) for path in vertex.files | fragment.files}
+    geometry = assemble(request.geometry, request.constants, request.aliases) if request.geometry else None
+    files = vertex.files | fragment.files | (geometry.files if geometry else set())
+    stamps = {path: _stamp(path) for path in files}
     locations = {name: location for location, name in enumerate(request.outputs or ()) if "[" not in name}
     try:
         linked = context.get().program(
-            vertex_shader=vertex.text, fragment_shader=fragment.text, fragment_outputs=locations
+            vertex_shader=vertex.text,
+            geometry_shader=geometry.text if geometry else None,
+            fragment_shader=fragment.text,
+            fragment_outputs=locations,
         )
     except moderngl.Error as error:
-        raise ShaderError(_explain(str(error), vertex, fragment)) from None
-    constants = vertex.constants | fragment.constants
+        stages = {"vertex_shader": vertex, "geometry_shader": geometry or vertex}
+        raise ShaderError(_explain(str(error), stages, fragment)) from None
+    constants = vertex.constants | fragment.constants | (geometry.constants if geometry else set())
     return Program(linked, fragment.name, request, stamps, constants, _locations(linked, request, fragment))
 
 
@@ -207,10 +215,18 @@ def _locations(linked: moderngl.Program, request: Request, fragment: Source) -> 
     return found
 
 
-def _explain(message: str, vertex: Source, fragment: Source) -> str:
+def _explain(message: str, stages: Mapping[str, Source], fragment: Source) -> str:
     """moderngl's report, told in our files and lines."""
-    stage = vertex if "vertex_shader" in message.splitlines()[:4] else fragment
+    head = message.splitlines()[:4]
+    stage = next((source for name, source in stages.items() if name in head), fragment)
     report = [line for line in message.splitlines() if line.strip() and set(line.strip()) != {"="}]
-    titles = ("GLSL Compiler failed", "GLSL Linker failed", "vertex_shader", "fragment_shader", "Program")
+    titles = (
+        "GLSL Compiler failed",
+        "GLSL Linker failed",
+        "vertex_shader",
+        "geometry_shader",
+        "fragment_shader",
+        "Program",
+    )
     detail = "\n".join(line for line in report if line.strip() not in titles)
     return f"{stage.name} does not compile:\n{stage.locate(detail)}"

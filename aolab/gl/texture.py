@@ -3,6 +3,8 @@
 import math
 import operator
 from collections import defaultdict
+from collections.abc import Mapping
+from dataclasses import dataclass
 
 import moderngl
 import numpy as np
@@ -87,10 +89,19 @@ def attach(textures: list[moderngl.Texture], depth: Depth | None = None) -> mode
         ) from error
 
 
+@dataclass(frozen=True, eq=False)
+class Kept:
+    """Textures that outlive the frame that drew them, and the `key` of their content."""
+
+    key: object
+    textures: Mapping[str, moderngl.Texture]
+
+
 class Pool:
-    """Textures and their framebuffers, used again when nobody holds them."""
+    """Textures and their framebuffers, used again when nobody holds them; and `kept` textures by name."""
 
     def __init__(self) -> None:
+        self.kept: dict[str, Kept] = {}
         self._free: dict[tuple[Size, str], list[moderngl.Texture]] = defaultdict(list)
         self._framebuffers: dict[tuple[int, ...], moderngl.Framebuffer] = {}
 

@@ -73,3 +73,21 @@ def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
     width = max(falloff, 1e-4)
     t = np.clip((np.sqrt(squared_distance) - (1 - width)) / width, 0, 1)
     return 1 - t * t * (3 - 2 * t)
+
+
+@lru_cache(maxsize=256)
+def uniform_cone(count: int, seed: int, spread: float = 1.0) -> np.ndarray:
+    """Directions of uniform density in a cone around +z: (count, 4) float32, unit xyz, and w, an offset in [0, 1).
+
+    `spread` in (0, 1] is the cone's half-angle in right angles. The points are those of `cosine_hemisphere`.
+    """
+    index = np.arange(count)
+    shift = np.random.default_rng(seed).random(3)
+    elevation = (index + (0.5 if seed == 0 else shift[0])) / count
+    azimuth = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
+    offset = (radical_inverse(index, 3) + shift[2]) % 1
+    z = 1 - elevation * (1 - np.cos(spread * np.pi / 2))
+    r = np.sqrt(np.maximum(0, 1 - z * z))
+    kernel = np.stack([r * np.cos(azimuth), r * np.sin(azimuth), z, offset], axis=1).astype(np.float32)
+    kernel.flags.writeable = False
+    return kernel

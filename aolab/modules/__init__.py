@@ -9,6 +9,7 @@ from .ambient_transfer import AmbientTransfer
 from .base import Module
 from .buffers import BUFFERS, Buffer
 from .find import find
+from .hao import HAO
 from .none import Unoccluded
 from .s3ho import S3HO
 from .ssao import SSAO
@@ -16,7 +17,7 @@ from .ssbn import SSBN
 from .ssdo import SSDO
 
 MODULES: dict[str, type[Module]] = {
-    module.name: module for module in (Unoccluded, SSAO, SSDO, S3HO, SSBN, AmbientTransfer)
+    module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN, AmbientTransfer)
 }
 
 
@@ -25,9 +26,8 @@ def known_buffers() -> dict[str, Buffer]:
     return BUFFERS | {row.name: row for module in MODULES.values() for row in module.buffers}
 
 
-ModuleName = Literal[
-    "none", "ssao", "ssdo", "s3ho", "ssbn", "ambient_transfer"
-]  # the same names, for editors; a test compares them
+# the same names, for editors; a test compares them
+ModuleName = Literal["none", "ssao", "ssdo", "hao", "s3ho", "ssbn", "ambient_transfer"]
 
 
 class _Callable(ModuleType):
@@ -39,15 +39,6 @@ class _Callable(ModuleType):
 sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
 
 __all__ = [
-    "MODULES",
-    "S3HO",
-    "SSAO",
-    "SSBN",
-    "SSDO",
-    "AmbientTransfer",
-    "Module",
-    "ModuleName",
-    "Unoccluded",
-    "find",
+    "HAO", "MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "Module", "ModuleName", "Unoccluded", "find",
     "known_buffers",
-]
+]  # fmt: skip

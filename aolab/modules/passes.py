@@ -43,6 +43,8 @@ class Pass:
 class GeometryPass(Pass):
     """A pass that draws the scene's triangles: `vertex` is its vertex shader, `shader` its fragment shader.
 
+    `geometry` is a geometry shader between the two, for a pass whose fragments need the whole triangle.
+
     `seen_from` returns the viewpoint from the scene and the camera's view; None is the camera's view. The outputs have
     the viewpoint's size. `clear` (buffer: value) fills outputs before drawing; without it, they start as 0. `combine`
     decides between a fragment and its pixel: `nearest` tests the depth, `or` sets bits of unsigned integers.
@@ -51,6 +53,7 @@ class GeometryPass(Pass):
     """
 
     vertex: str = "pipeline/gbuffer.vert"
+    geometry: str = ""
     seen_from: Callable[[Scene, View], Viewpoint] | None = None
     clear: Mapping[str, float] = field(default_factory=dict)
     combine: Literal["nearest", "or"] = "nearest"

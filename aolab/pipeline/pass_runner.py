@@ -1,6 +1,7 @@
 """Runs full-screen passes: textures in by name, textures out by name, timed."""
 
-from collections.abc import Iterable, Mapping
+import weakref
+from collections.abc import Callable, Iterable, Mapping
 from types import MappingProxyType
 
 import moderngl
@@ -9,7 +10,7 @@ from ..errors import ShaderError, suggestion
 from ..gl import context
 from ..gl.bindings import Bindings, Joined, joined
 from ..gl.program import FULLSCREEN, Program, Programs
-from ..gl.texture import Depth, Pool, Size
+from ..gl.texture import Depth, Kept, Pool, Size
 from ..gl.timer import Timer
 from ..modules.passes import Pass
 from ..scene.view import Region
@@ -25,6 +26,7 @@ class PassRunner:
         self.timer = Timer()
         self.lent: list[tuple[Size, str, moderngl.Texture]] = []
         self._borders: dict[float, moderngl.Sampler] = {}
+        self._held: list[Kept] = []  # of the pool's kept textures, those that this frame reads
 
     def take(self, size: Size, format: str, border: float | None = None) -> moderngl.Texture:
         """A texture that belongs to this frame until nobody holds the frame; `border` as `Pool.take` has it."""
@@ -41,6 +43,29 @@ class PassRunner:
         scratch = {texture.glo for texture in buffers.values()}
         self.pool.give_back([entry for entry in self.lent if entry[2].glo in scratch])
         self.lent = [entry for entry in self.lent if entry[2].glo not in scratch]
+
+    def kept(self, name: str, key: object, make: Callable[[], Buffers]) -> Buffers:
+        """The textures that `make` returns, kept between frames under `name` while `key` and the shaders stay the same.
+
+        Other textures that `make` draws go back to the pool. The frame holds the kept ones as long as it lives.
+        """
+        key = key, self.programs.generation
+        kept = self.pool.kept.get(name)
+        if kept is None or kept.key != key:
+            before, self.lent = self.lent, []
+            try:
+                textures = make()
+                glos = {texture.glo for texture in textures.values()}
+                self.pool.give_back([entry for entry in self.lent if entry[2].glo not in glos])
+                kept = self.pool.kept[name] = Kept(key, textures)
+                lent = [entry for entry in self.lent if entry[2].glo in glos]
+                weakref.finalize(kept, self.pool.give_back, lent)
+                self.lent = before
+            except BaseException:
+                self.lent = before + self.lent  # the caller gives them back
+                raise
+        self._held.append(kept)
+        return dict(kept.textures)
 
     def run(
         self,
@@ -68,10 +93,10 @@ class PassRunner:
             self._fullscreen(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
-    def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN) -> Program:
+    def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:
         """The pass's program, with these constants and includes."""
         return self.programs.get(
-            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes
+            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes, geometry
         )
 
     def framebuffer(

@@ -1,6 +1,6 @@
 """Draws the scene's triangles: G-buffers, depth layers, and the geometry passes of modules and occluder kinds."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 
 import moderngl
@@ -93,6 +93,10 @@ class Rasterizer:
         """The outputs of a full-screen pass."""
         return self.runner.run(step, bindings, size)
 
+    def kept(self, name: str, key: object, make: Callable[[], Buffers]) -> Buffers:
+        """The textures that `make` returns, kept between frames: see `PassRunner.kept`."""
+        return self.runner.kept(name, key, make)
+
     def triangles(
         self,
         step: GeometryPass,
@@ -107,7 +111,7 @@ class Rasterizer:
         own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
         views = [Bindings("the view", uniforms=one.uniforms, constants=one.constants) for one in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
-        program = runner.program(step, given[0], step.vertex)
+        program = runner.program(step, given[0], step.vertex, step.geometry)
         tested = step.combine == "nearest"
         depth = (depth or self.depth.of(size)) if tested else None
         targets = runner.targets(step, size)

@@ -51,6 +51,8 @@ def test_every_parameter_has_a_control_whose_ends_are_valid(boxes, module):
             values = control["choices"]
         elif control["kind"] == "bool":
             values = [False, True]
+        elif control["kind"] == "text":
+            values = [control["default"]]
         else:
             cast = int if control["kind"] == "int" else float
             values = [cast(control["low"]), cast(control["high"])]

@@ -4,5 +4,6 @@ from .base import Filter
 from .bilateral import Bilateral
 from .box4 import Box4
 from .none import Unfiltered
+from .wendland import Wendland
 
-FILTERS: dict[str, type[Filter]] = {filter.name: filter for filter in (Unfiltered, Box4, Bilateral)}
+FILTERS: dict[str, type[Filter]] = {filter.name: filter for filter in (Unfiltered, Box4, Bilateral, Wendland)}

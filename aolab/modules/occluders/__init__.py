@@ -5,7 +5,8 @@ from .depth import Depth
 from .layers import Layers
 from .product import Product
 from .views import Views
+from .voxels import Voxels
 
-OCCLUDERS: dict[str, type[OccluderKind]] = {kind.name: kind for kind in (Depth, Layers, Views)}
+OCCLUDERS: dict[str, type[OccluderKind]] = {kind.name: kind for kind in (Depth, Layers, Views, Voxels)}
 
-__all__ = ["OCCLUDERS", "Depth", "Layers", "OccluderKind", "Product", "Views"]
+__all__ = ["OCCLUDERS", "Depth", "Layers", "OccluderKind", "Product", "Views", "Voxels"]

@@ -1,6 +1,6 @@
 """The interface of an occluder kind: its parameters, its GLSL, and the textures that it draws for that."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
@@ -41,6 +41,13 @@ class Drawing(Protocol):
 
     def run(self, step: Pass, bindings: Iterable[Bindings], size: Size) -> Textures:
         """The outputs of a pass over a whole picture of `size`."""
+        ...
+
+    def kept(self, name: str, key: object, make: Callable[[], Textures]) -> Textures:
+        """The textures that `make` returns, kept between frames under `name` while `key` stays equal.
+
+        Other textures that `make` draws are scratch.
+        """
         ...
 
 
