@@ -16,8 +16,8 @@ lab = aolab.Lab(SIZE)
 scene = aolab.load("atrium")
 pictures = []
 for name in MODULES:
-    lab.render(scene, name)  # the first frame compiles and uploads, the second is timed
-    frame = lab.render(scene, name)
+    lab.render(scene, name).complete()  # the first frame compiles and uploads, the second is timed
+    frame = lab.render(scene, name).complete()
     print(f"{name}: {frame.frame_ms:.0f} ms on {frame.info['renderer']}")
     for step, milliseconds in frame.timings.items():
         print(f"  {step:20} {milliseconds:7.1f} ms")

@@ -138,6 +138,10 @@ class Programs:
             self._in_text[shader] = declared(shader)
         return self._in_text[shader]
 
+    def changed(self) -> bool:
+        """Whether a file of a program was written since the program was compiled."""
+        return any(program.changed() for program in self._programs.values())
+
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
         """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay.
 

@@ -115,6 +115,9 @@ class Explorer(anywidget.AnyWidget):
         size = max(1, round(width * share)), max(1, round(height * share))
         accumulate = 1 if moving else self._accumulate
         frame = shared_lab().render(self.scene, self.module, camera=self.camera, size=size, accumulate=accumulate)
+        wanted = str(wish.get("buffer", ""))
+        buffer = wanted if wanted in frame.buffers else first_buffer(frame.buffers)
+        frame[buffer]  # computed now, so that the times include it
         if moving:  # the next moving frame is larger or smaller, as the time allows
             self._share = float(np.clip(share * (MOVING_MS / max(frame.frame_ms, 1)) ** 0.5, LEAST_SHARE, 1))
         else:
@@ -122,8 +125,6 @@ class Explorer(anywidget.AnyWidget):
             self._share = max(self._share, LEAST_SHARE)
         self.frame = frame
         self.code = self._code()
-        wanted = str(wish.get("buffer", ""))
-        buffer = wanted if wanted in frame.buffers else first_buffer(frame.buffers)
         sides = "×".join(map(str, size))
         reply |= {
             "code": self.code,

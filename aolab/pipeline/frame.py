@@ -1,16 +1,19 @@
 """The result of a render: every buffer by name, read on demand, and the image."""
 
+import warnings
 import weakref
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from os import PathLike
+from time import perf_counter
 from typing import Any, Self, TypeVar
 
 import moderngl
 import numpy as np
 from PIL import Image
 
-from ..errors import ParameterError, suggestion
+from ..errors import Notice, ParameterError, suggestion
 from ..gl.texture import Pool, read
 from ..gl.thread import handed
 from ..modules.buffers import BUFFERS, Buffer
@@ -21,6 +24,17 @@ from ..scene.camera import Camera
 from ..scene.scene import Scene
 
 Holder = TypeVar("Holder")
+Textures = Mapping[str, moderngl.Texture | np.ndarray]
+
+
+@dataclass(frozen=True)
+class Later:
+    """The buffers `names` of a frame that wait until one of them is read; `make` computes them all, and their passes'
+    milliseconds.
+    """
+
+    names: Sequence[str]
+    make: Callable[["Frame"], tuple[Textures, dict[str, float]]]
 
 
 @dataclass(eq=False)
@@ -31,9 +45,12 @@ class Frame:
     the names. `image` is (H, W, 3) uint8 sRGB. `timings` is {pass: ms}, `frame_ms` the whole call. `info` has the
     settings: renderer, module, parameters, camera, size, seed, ...; `notes` the repairs and omissions. A frame keeps
     its textures until it is dropped, so that frames may be kept and compared; each costs 80 to 300 bytes a pixel.
+
+    The lighting (`direct`, `ambient`, `radiance`, `image`, ...) is computed when its first buffer is read. Its passes
+    are in `timings`, and its time in `frame_ms`, from then on; `complete()` computes it at once.
     """
 
-    textures: Mapping[str, moderngl.Texture | np.ndarray]
+    made: Mapping[str, moderngl.Texture | np.ndarray]  # by name; without the buffers that wait
     timings: dict[str, float]
     info: dict[str, Any]
     frame_ms: float = 0.0
@@ -43,12 +60,35 @@ class Frame:
     table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # describes the buffers
     scene: Scene | None = field(default=None, repr=False)  # as it was lit
     kept: Any = field(default=None, repr=False)  # for its lab, to light it again
+    later: Later | None = field(default=None, repr=False)
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def buffers(self) -> list[str]:
         """The names of all buffers."""
-        return sorted({*self.textures, *self.derived})
+        return sorted({*self.made, *self.derived, *(self.later.names if self.later else ())})
+
+    @property
+    def textures(self) -> Textures:
+        """All buffers that are not derived, by name: textures of the lab, or arrays."""
+        return self.complete().made
+
+    def complete(self) -> Self:
+        """Compute the buffers that wait until they are read. Raises the errors of `Lab.render`."""
+        if self.later is not None:
+            handed(self._complete)()
+        return self
+
+    def _complete(self) -> None:
+        if self.later is None:  # another thread was faster
+            return
+        start = perf_counter()
+        with noting(self.notes):
+            made, timings = self.later.make(self)
+        self.made, self.later = {**self.made, **made}, None
+        for name, milliseconds in timings.items():
+            self.timings[name] = self.timings.get(name, 0.0) + milliseconds
+        self.frame_ms += (perf_counter() - start) * 1e3
 
     @property
     def size(self) -> tuple[int, int]:
@@ -74,7 +114,7 @@ class Frame:
 
     def channels(self, name: str) -> np.ndarray:
         """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
-        source = self.textures[name]
+        source = self.made[name] if name in self.made else self.textures[name]
         return source if isinstance(source, np.ndarray) else handed(read)(source)
 
     def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
@@ -148,7 +188,7 @@ class Frame:
     def __getstate__(self) -> dict[str, Any]:
         """The state for pickle: every buffer as an array. The pickled frame can be compared, but not lit again."""
         arrays = {name: self[name] for name in self.buffers}
-        return {**self.__dict__, "textures": arrays, "derived": {}, "kept": None, "_arrays": dict(arrays)}
+        return {**self.__dict__, "made": arrays, "derived": {}, "kept": None, "later": None, "_arrays": dict(arrays)}
 
     def _repr_png_(self) -> bytes:
         return display.frame_png(self)
@@ -159,6 +199,17 @@ class Frame:
     def __repr__(self) -> str:
         width, height = self.size
         return f"<Frame {width}x{height} {self.info['module']}: {', '.join(self.buffers)}>"
+
+
+@contextmanager
+def noting(notes: list[str]) -> Iterator[None]:
+    """Append each `Notice` of the block to `notes`; the notices are issued when the block ends."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", Notice)
+        yield
+    notes += [str(note.message) for note in caught]
+    for note in caught:
+        warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
 
 
 def lend(holder: Holder, pool: Pool, lent: list[Any]) -> Holder:

@@ -5,8 +5,10 @@ import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from functools import partial
 from time import perf_counter
 from typing import Any
+from weakref import WeakSet
 
 import moderngl
 
@@ -29,7 +31,7 @@ from ..version import __version__
 from . import lighting, surfaces
 from .environments import EnvironmentMaps
 from .estimate import estimate
-from .frame import Frame, lend
+from .frame import Frame, Later, lend, noting
 from .geometry import Geometry
 from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, ToneMap
@@ -58,6 +60,7 @@ class Lab:
         self._environments, self._depth = EnvironmentMaps(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
         self._sizes: set[Size] = set()
+        self._waiting: WeakSet[Frame] = WeakSet()  # for their light
 
     @property
     def programs_compiled(self) -> int:
@@ -75,7 +78,7 @@ class Lab:
 
         Raises `ShaderError` for one that does not compile: then the last good programs stay in use.
         """
-        return self._programs.reload(only_changed=True)
+        return self._reload()
 
     @handed
     def render(
@@ -99,9 +102,8 @@ class Lab:
         different sets. `last` is the frame before this one, for modules that read it.
         Raises `ParameterError`, `SceneError`, `ShaderError`, `GpuMemoryError`, `ContextError`.
         """
-        start = perf_counter()
-        with warnings.catch_warnings(record=True) as caught:
-            warnings.simplefilter("always", Notice)
+        start, notes = perf_counter(), list[str]()
+        with noting(notes):
             frame = self._render(
                 _as_scene(scene),
                 find(module, MODULES, **parameters),
@@ -112,11 +114,9 @@ class Lab:
                 _display(exposure, tone_map),
                 last,
             )
-        frame.notes = [str(note.message) for note in caught]
-        frame.frame_ms = (perf_counter() - start) * 1e3
-        for note in caught:
-            warnings.warn_explicit(note.message, note.category, note.filename, note.lineno)
-        return frame
+            frame.frame_ms = (perf_counter() - start) * 1e3
+        frame.notes = notes
+        return frame.complete() if last is not None else frame  # it may read the last frame, which need not live on
 
     @handed
     def relight(
@@ -147,10 +147,10 @@ class Lab:
             frame.info["tone_map"] if tone_map is None else tone_map,
         )
         self._begin()
-        lit = self._lit(frame.kept, self._rasterizer(scene, NO_LAST), display)
+        lit = self._frame(frame.kept, self._rasterizer(scene, NO_LAST), display)
         lit.notes = list(frame.notes)
         lit.frame_ms = (perf_counter() - start) * 1e3
-        return lit
+        return lit.complete()
 
     def _render(
         self,
@@ -172,7 +172,7 @@ class Lab:
         rasterizer = self._rasterizer(scene, last_frame(last, view))
         frame = FrameContext(rasterizer, module, view, range(seed, seed + frames))
         drawn = context.get().query(samples=True)
-        result = self._lit(self._state(frame, drawn), frame.rasterizer, display)
+        result = self._frame(self._state(frame, drawn), frame.rasterizer, display)
         if not drawn.samples:
             warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
         elif reason := clipping.reason_of_cut(scene, view):
@@ -186,7 +186,14 @@ class Lab:
     def _begin(self) -> None:
         context.collect()
         if self.watch:
-            self._programs.reload(only_changed=True, tell_again=False)
+            self._reload(tell_again=False)
+
+    def _reload(self, **how: bool) -> list[str]:
+        """Compile the files that changed; frames that wait for their light get it from the programs before."""
+        if self._programs.changed():
+            for frame in [*self._waiting]:
+                frame.complete()
+        return self._programs.reload(only_changed=True, **how)
 
     def _make_room(self, sizes: set[Size]) -> None:
         """After a change of resolution, free the textures of the old one that no frame holds."""
@@ -209,30 +216,15 @@ class Lab:
         lent, runner.lent = runner.lent, []
         return lend(state, self._pool, lent)
 
-    def _lit(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
-        """A frame from kept surfaces, under the light of the rasterizer's scene."""
+    def _frame(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
+        """A frame from kept surfaces. Its light, that of the rasterizer's scene, is computed when it is first read."""
         state = kept.under(rasterizer)
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
         module, view = frame.module, frame.view
-        assert scene.environment is not None  # Scene fills it in
         with self._lending(runner):
-            tables = self._environments.tables(scene.environment, module.tables())
-            lights = Lights(
-                lighting.lamps(scene, self._shadow_maps(rasterizer, ShadowSettings.of(module))),
-                scene.environment,
-                tables,
-            )
-            if module.lit:
+            lights = self._lights(frame) if module.lit else None
+            if lights is not None:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
-            lit = lighting.light(state, lights)
-            buffers = {**state.large, **state.estimate, **lit}
-            if bounce := module.bounce():
-                sender, sending = senders(state, lit, lights)
-                known = [Bindings("the lighting", {**lit, **sender}), Bindings("the estimate", state.estimate)]
-                gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
-                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, gathered, view)}
-            sky = self._environments.of(scene.environment)
-            buffers |= lighting.compose(runner, buffers, sky, view, display)
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
         info = {
             "aolab": __version__,
@@ -248,10 +240,51 @@ class Lab:
             **asdict(display),
             "triangles": scene.triangles,
         }
-        derived = {f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")}
-        table = BUFFERS | {row.name: row for row in module.buffers}
-        result = Frame(buffers, runner.timer.result(), info, derived=derived, table=table, scene=scene, kept=kept)
+        result = Frame(
+            {**state.large, **state.estimate},
+            runner.timer.result(),
+            info,
+            derived={f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")},
+            table=BUFFERS | {row.name: row for row in module.buffers},
+            scene=scene,
+            kept=kept,
+            later=Later(lighting.names(module), partial(self._lit, state, lights, display)),
+        )
+        self._waiting.add(result)
         return lend(result, self._pool, runner.lent)
+
+    def _lights(self, frame: FrameContext) -> Lights:
+        """All that shines on the frame's scene."""
+        scene = frame.scene
+        assert scene.environment is not None  # Scene fills it in
+        tables = self._environments.tables(scene.environment, frame.module.tables())
+        return Lights(
+            lighting.lamps(scene, self._shadow_maps(frame.rasterizer, ShadowSettings.of(frame.module))),
+            scene.environment,
+            tables,
+        )
+
+    def _lit(
+        self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
+    ) -> tuple[Buffers, dict[str, float]]:
+        """The light of a frame, and the milliseconds of its passes. The textures live as long as the frame."""
+        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
+        state = state.under(rasterizer)
+        runner, view = rasterizer.runner, state.frame.view
+        with self._lending(runner):
+            lights = lights or self._lights(state.frame)
+            buffers = lighting.light(state, lights)
+            if bounce := state.frame.module.bounce():
+                sender, sending = senders(state, buffers, lights)
+                known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
+                gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
+                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, gathered, view)}
+            sky = self._environments.of(lights.sky)
+            buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
+            refuse_exhaustion(f"the light of a frame of {view.size[0]}x{view.size[1]}")
+        self._waiting.discard(result)
+        lend(result, self._pool, runner.lent)
+        return buffers, runner.timer.result()
 
     @contextmanager
     def _lending(self, runner: PassRunner) -> Iterator[None]:

@@ -8,6 +8,7 @@ import moderngl
 import numpy as np
 
 from ..gl.bindings import Bindings
+from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.estimate import Estimate
 from ..modules.passes import Pass, reflect
@@ -79,6 +80,18 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
     }
     textures = {"shadow_atlas": shadows.atlas, "shadow_table": shadows.table}
     return Bindings("the lights", textures, uniforms, {"lights": count, "light_slots": slots})
+
+
+def names(module: Module) -> list[str]:
+    """The buffers of the module's lighting, before they are computed."""
+    found = [name for step in module.lighting() for name in _outputs(step)]
+    if bounce := module.bounce():
+        found += ["sender", *_outputs(bounce), "indirect"]
+    return [*found, *_COMPOSE.outputs]
+
+
+def _outputs(step: Estimate | Pass) -> list[str]:
+    return [*step.outputs, *(f"{name}_raw" for name in step.outputs if isinstance(step, Estimate))]
 
 
 def light(state: SurfaceState, lights: Lights) -> Buffers:

@@ -76,6 +76,8 @@ class Job:
         }
         for _ in range(2 if warm else 1):
             frame = lab.render(scene, module, camera=self._camera(scene), **settings)
+            if warm:
+                frame.complete()
         frame.notes = [*notes, *frame.notes]  # pyright: ignore[reportPossiblyUnboundVariable]
         return frame  # pyright: ignore[reportPossiblyUnboundVariable]
 

@@ -54,7 +54,7 @@ def curve(
     scene, lab = load(scene), Lab(size)
     judge = SSAO(radius=radius).resolved(scene)
     # the passes that every frame has; this is the first frame of the lab, so that the shadow maps are among them
-    shared = lab.render(scene, "none", filter="none").timings.keys() - {"none"}
+    shared = lab.render(scene, "none", filter="none").complete().timings.keys() - {"none"}
 
     grids = [(module, settings(module)) for module in _chosen(modules, judge, scene)]
     variants, noise = [], 0.0
@@ -64,7 +64,9 @@ def curve(
             wanted = ("visibility", "standard_error")
             truth = reference(scene, size=size, rays=rays, like=like, seed=seed, buffers=wanted)
             for one, varied in grid:
-                error = visibility_error(lab.render(scene, one, seed=seed), truth)  # also compiles the shaders
+                error = visibility_error(
+                    lab.render(scene, one, seed=seed).complete(), truth
+                )  # also compiles the shaders
                 variants.append((one, varied, one == module, error))
                 bar.update()
             noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
@@ -159,7 +161,7 @@ def _times(
     with progress_bar("times", frames * len(modules), " frames") as bar:
         for _ in range(frames):
             for module, known in zip(modules, times, strict=True):
-                timings = lab.render(scene, module).timings
+                timings = lab.render(scene, module).complete().timings
                 known.append({name: milliseconds for name, milliseconds in timings.items() if name not in shared})
                 bar.update()
     return times

@@ -100,7 +100,7 @@ def test_programs_are_kept_by_the_constants_that_they_declare(gl):
 def edited(gl, shaders):
     """A lab over editable shaders, with a scene that it has rendered."""
     lab, scene = Lab((16, 12)), small_scenes.boxes()
-    lab.render(scene, "none")
+    lab.render(scene, "none").complete()
     return lab, scene, shaders / "none.frag"
 
 

@@ -127,7 +127,7 @@ def test_a_table_named_like_a_texture_of_the_lights_is_refused(lab, plane):
 
     message = r"pass 'direct': the texture 'shadow_atlas' is given twice, by the lights and by the environment"
     with pytest.raises(ParameterError, match=message):
-        lab.render(plane, Twice)
+        lab.render(plane, Twice).complete()
 
 
 # --- `out` variables go by their names

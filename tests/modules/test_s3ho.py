@@ -280,7 +280,7 @@ def test_a_shadow_sets_in_where_light_grazes(lab):
 def test_new_light_runs_the_lighting_alone(boxes):
     """Counted by the passes that were timed."""
     lab = Lab((64, 48))
-    frame = lab.render(under(boxes, SUN, LAMP), "s3ho", indirect=True)
+    frame = lab.render(under(boxes, SUN, LAMP), "s3ho", indirect=True).complete()
     assert {"g_buffer", "s3ho", "s3ho senders"} < set(frame.timings)
     moved = [PointLight((1.0, 2.0, 2.0), (5.0, 4.0, 3.0)), DirectionalLight((0, -1, 0.2))]
     lit = lab.relight(frame, environment=SUN.rotated(120), lights=moved)

@@ -532,22 +532,22 @@ PLAIN = {"g_buffer", "ssdo", "filter open_light to all_light", "direct", "ambien
 
 
 def test_nothing_is_paid_for_what_is_switched_off(lab, boxes):
-    lab.render(boxes, "none")  # the shadow maps of a scene that stands still are drawn once
-    frame = lab.render(boxes, "ssdo")
+    lab.render(boxes, "none").complete()  # the shadow maps of a scene that stands still are drawn once
+    frame = lab.render(boxes, "ssdo").complete()
     assert set(frame.timings) == PLAIN
     estimated = [f"{name}{raw}" for name in ("open_light", "all_light", "visibility") for raw in ("", "_raw")]
     assert frame.buffers == sorted(
         ["albedo", "ambient", "direct", "image", "radiance", "viewNormal", "viewZ", *estimated]
     )
-    assert set(lab.render(boxes, "ssao").timings) == PLAIN - {"ssdo", "filter open_light to all_light"} | {
+    assert set(lab.render(boxes, "ssao").complete().timings) == PLAIN - {"ssdo", "filter open_light to all_light"} | {
         "ssao",
         "filter visibility",
     }
 
-    bounced = lab.render(boxes, "ssdo", bounces=1)
+    bounced = lab.render(boxes, "ssdo", bounces=1).complete()
     assert set(bounced.timings) - PLAIN == {"sender", "ssdo bounce", "filter bounce", "indirect"}
     assert set(bounced.buffers) - set(frame.buffers) == {"sender", "bounce", "bounce_raw", "indirect"}
-    lit = lab.render(boxes, "ssdo", light_steps=8)
+    lit = lab.render(boxes, "ssdo", light_steps=8).complete()
     assert set(lit.timings) - PLAIN == {"ssdo lights", "filter light_share"}
     assert set(lit.buffers) - set(frame.buffers) == {"light_share", "light_share_raw"}
 

@@ -67,11 +67,11 @@ def test_an_interrupt_at_every_line():
     names = ("image", "viewZ", "bounce")
     before = render()
     right = {name: before[name].copy() for name in names}
-    places = lines_of(render)
+    places = lines_of(lambda: render().complete())
     assert len(places) > 200
     interrupts = 0
     for place in places:
-        interrupts += interrupted_at(render, place)
+        interrupts += interrupted_at(lambda: render().complete(), place)
         now = render()
         now["image"]  # read at once; the other buffers after the next interrupt and the next frame
         for frame in (before, now):

@@ -126,7 +126,8 @@ def test_any_size(lab, boxes, module, size):
 
 def test_a_frame_records_its_settings(lab, boxes):
     camera = Camera((0, 4, 4), (0, 0, 0), fov=30)
-    frame = lab.render(boxes, "ssao", camera=camera, seed=3, accumulate=2, exposure=1.5, tone_map="linear", radius=0.7)
+    settings = {"seed": 3, "accumulate": 2, "exposure": 1.5, "tone_map": "linear"}
+    frame = lab.render(boxes, "ssao", camera=camera, **settings, radius=0.7).complete()
     info = frame.info
     assert (info["module"], info["seed"], info["accumulate"], info["size"]) == ("ssao", 3, 2, [64, 48])
     assert (info["exposure"], info["tone_map"], info["parameters"]["radius"]) == (1.5, "linear", 0.7)

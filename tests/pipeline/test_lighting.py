@@ -265,7 +265,7 @@ def test_too_many_shadow_tiles_are_refused_with_the_way_out(lab):
     lights = tuple(PointLight((x, 2, 0)) for x in range(43))
     message = r"43 lights \(43 of them points.*258 shadow tiles.*limit is 256.*shadow=False"
     with pytest.raises(aolab.SceneError, match=message):
-        lab.render(floor_under(*lights), "none")
+        lab.render(floor_under(*lights), "none").complete()
 
 
 def test_more_lights_than_a_uniform_array_has_matrices_for_cast_their_own_shadows(lab):

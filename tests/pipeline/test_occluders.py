@@ -79,9 +79,9 @@ def test_a_plane_stays_exactly_open(lab, settings, scale):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_nothing_is_drawn_for_kinds_that_are_not_chosen(lab, boxes, kind):
-    plain = lab.render(boxes, "ssdo", bounces=1)
+    plain = lab.render(boxes, "ssdo", bounces=1).complete()
     assert not {"peel", "pack layers", "views"} & set(plain.timings)
-    extra = set(lab.render(boxes, "ssdo", bounces=1, occluders=kind).timings) - set(plain.timings)
+    extra = set(lab.render(boxes, "ssdo", bounces=1, occluders=kind).complete().timings) - set(plain.timings)
     assert extra == {"layers": {"peel", "pack layers"}, "views": {"views"}}[kind]
     assert lab.render(boxes, "ssdo", occluders=kind).buffers == lab.render(boxes, "ssdo").buffers
 

@@ -72,7 +72,7 @@ def measure(frame: Frame, truth: Frame | None, measures: Iterable[Measure]) -> d
             found |= _own(one, frame, truth)
             continue
         buffer, region, last = parse(one)
-        if buffer not in frame.buffers:
+        if buffer not in frame:
             module = frame.info.get("module")
             raise ParameterError(f"module {module} has no buffer '{buffer}'{suggestion(buffer, frame.buffers)}")
         if last in OF_FRAME:
