@@ -158,7 +158,7 @@ def test_maps_that_the_driver_has_no_room_for_are_refused_with_the_largest_that_
         aolab.ParameterError,
         match=r"240 shadow maps of 2048 pixels a side need an atlas of 32768x32768.*At most \d+ such",
     ):
-        lab.render(crowd, "none", shadow_resolution=2048)
+        lab.render(crowd, "none", shadow_resolution=2048).complete()
     with pytest.raises(aolab.ParameterError, match="shadow_resolution = 8 is not valid"):
         lab.render(crowd, "none", shadow_resolution=8)
     with pytest.raises(aolab.ParameterError, match="shadow_bias = 'slope' is not valid"):
