@@ -63,6 +63,40 @@ def _reach(uniform: np.ndarray, falloff: float) -> np.ndarray:
     return 1 - falloff + falloff * faded
 
 
+@lru_cache(maxsize=64)
+def disc(count: int, seed: int) -> np.ndarray:
+    """Samples of the unit disc, more of them near its centre: (count, 4) float32 of x, y, the share of the disc, 0.
+
+    The radius is uniform, so that the density falls with 1/r (Dachsbacher and Stamminger 2005, section 4.1), and the
+    share is 2 r / N: the shares add up to 1. Hammersley points, shifted as a whole by a vector from `seed`.
+    """
+    index = np.arange(count)
+    shift = np.random.default_rng(seed).random(2)
+    radius = (index + (0.5 if seed == 0 else shift[0])) / count
+    angle = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
+    return _plane_samples(radius, angle, 2 * radius / count)
+
+
+@lru_cache(maxsize=64)
+def line(count: int, seed: int) -> np.ndarray:
+    """Samples on a line from the centre of the unit disc to its rim: (count, 4) float32 of x, y, the share, 0.
+
+    The distances are x² for even x in (0, 1) (Chow 2014, step 1). Turned by all angles, a sample sweeps a ring of the
+    width 2 x / N, and its share of the disc is 4 x³ / N. `seed` shifts the distances and turns the line.
+    """
+    index = np.arange(count)
+    shift = np.random.default_rng(seed).random(2)
+    x = (index + (0.5 if seed == 0 else shift[0])) / count
+    angle = np.full(count, 2 * np.pi * shift[1] / 16)  # between the 16 angles of the pixels
+    return _plane_samples(x**2, angle, 4 * x**3 / count)
+
+
+def _plane_samples(radius: np.ndarray, angle: np.ndarray, share: np.ndarray) -> np.ndarray:
+    samples = np.stack([radius * np.cos(angle), radius * np.sin(angle), share, 0 * share], axis=1).astype(np.float32)
+    samples.flags.writeable = False
+    return samples
+
+
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:
     """The weight of an occluder, in [0, 1], at `squared_distance` in squared radii.
 

@@ -11,13 +11,15 @@ from .buffers import BUFFERS, Buffer
 from .find import find
 from .hao import HAO
 from .none import Unoccluded
+from .rotated_ssao import RotatedSSAO
+from .rsm import RSM
 from .s3ho import S3HO
 from .ssao import SSAO
 from .ssbn import SSBN
 from .ssdo import SSDO
 
 MODULES: dict[str, type[Module]] = {
-    module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN, AmbientTransfer)
+    module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN, AmbientTransfer, RotatedSSAO, RSM)
 }
 
 
@@ -27,7 +29,7 @@ def known_buffers() -> dict[str, Buffer]:
 
 
 # the same names, for editors; a test compares them
-ModuleName = Literal["none", "ssao", "ssdo", "hao", "s3ho", "ssbn", "ambient_transfer"]
+ModuleName = Literal["none", "ssao", "ssdo", "hao", "s3ho", "ssbn", "ambient_transfer", "rotated_ssao", "rsm"]
 
 
 class _Callable(ModuleType):
@@ -39,6 +41,6 @@ class _Callable(ModuleType):
 sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
 
 __all__ = [
-    "HAO", "MODULES", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "Module", "ModuleName", "Unoccluded", "find",
-    "known_buffers",
+    "HAO", "MODULES", "RSM", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "Module", "ModuleName", "RotatedSSAO",
+    "Unoccluded", "find", "known_buffers",
 ]  # fmt: skip

@@ -91,6 +91,12 @@ class AmbientTransfer(Module):
             return super().estimate()
         return Estimate([], {})  # the light has to be there before: see `lighting`
 
+    def openness(self) -> str:
+        return """
+        uniform sampler2D transfer_terms;
+        float opennessAt(ivec2 pixel) { return texelFetch(transfer_terms, pixel, 0).a; }
+        """
+
     def lighting(self) -> Sequence[Pass | Estimate]:
         steps: list[Pass | Estimate] = [*self.direct()]
         if self.albedo_source == "radiance":

@@ -128,6 +128,15 @@ else:
     FilterByName = by_name(FILTERS, Filter)
 
 
+OPENNESS = """
+uniform sampler2D visibility;
+float opennessAt(ivec2 pixel) { return texelFetch(visibility, pixel, 0).r; }
+"""
+OPEN = """
+float opennessAt(ivec2 pixel) { return 1.0; }
+"""
+
+
 class Module(Parameters):
     """A method. A subclass states its fields with `parameter(...)`, and these facts:
 
@@ -155,6 +164,7 @@ class Module(Parameters):
     derived: ClassVar[Mapping[str, "Callable[[Readable, str], np.ndarray]"]] = {}
     buffers: ClassVar[Sequence[Buffer]] = ()
     lit: ClassVar[bool] = False
+    parts: ClassVar[Sequence[str]] = ()  # of other modules: see `combined.py`
     choices: ClassVar[Mapping[str, Mapping[str, type[Choice]]]] = {"occluders": OCCLUDERS, "filter": FILTERS}
 
     occluders: OccludersByName = parameter(
@@ -291,6 +301,13 @@ class Module(Parameters):
         if "irradiance" in self.outputs:
             return [*self.direct(), reflect("irradiance", "ambient")]
         return [*self.direct(), replace(AMBIENT, constants={"occluded": "visibility" in self.outputs})]
+
+    def openness(self) -> str:
+        """GLSL text with `float opennessAt(ivec2 pixel)`, the visibility in [0, 1]: it stands for "openness.glsl".
+
+        A module without the output `visibility` returns its own.
+        """
+        return OPENNESS if "visibility" in self.outputs else OPEN
 
     def direct(self) -> Sequence[Pass]:
         """The passes of direct light: through shadow maps, and with `fill` also past the screen."""

@@ -60,6 +60,26 @@ LIT = _table(
     Buffer("image", 3, "RGBA8", "sRGB, 0 to 255", None, "displayed", "The radiance, tone mapped, for a screen."),
 )
 
+# the surfaces that the lights see, drawn if a pass of the module samples them; a map a light, side by side
+REFLECTIVE = _table(
+    Buffer(
+        "rsm_position", 3, "RGBA32F", "scene units", 0, "numbers",
+        "The point that a light sees, world space; the fourth channel is the area of its surface.",
+    ),
+    Buffer("rsm_normal", 3, "RGBA16F", "", 0, "direction", "The unit normal of that surface, world space."),
+    Buffer("rsm_flux", 3, "RGBA32F", "flux", 0, "numbers", "The flux that this surface reflects."),
+    Buffer("rsm_depth", 1, "R32F", "scene units", inf, "length", "The distance to the light, along the map's axis."),
+)  # fmt: skip
+REFLECTED = _table(
+    Buffer(
+        "rsm_irradiance", 3, "RGBA32F", "irradiance", 0, "numbers", "The irradiance from reflective shadow maps."
+    ),
+    Buffer(
+        "rsm_interpolated", 4, "RGBA32F", "irradiance", 0, "numbers",
+        "The same at low resolution, interpolated (rgb), and whether enough neighbours agree (a).",
+    ),
+)  # fmt: skip
+
 # read by the lighting: a module's output of one of these names has this meaning
 CONTRACT = _table(
     Buffer("visibility", 1, "R16F", "", nan, "share", "The open share of the hemisphere, weighted by the cosine."),
@@ -91,4 +111,4 @@ SHARED = _table(
     ),
 )
 
-BUFFERS: dict[str, Buffer] = SURFACES | ON_DEMAND | LIT | CONTRACT | SHARED
+BUFFERS: dict[str, Buffer] = SURFACES | ON_DEMAND | LIT | REFLECTIVE | CONTRACT | SHARED

@@ -13,10 +13,11 @@ class Estimate:
 
     The outputs are averaged over the sample sets, filtered, and brought to full size. `once` are passes before the
     others, at full size, that no sample set changes: voxels, or a light's G-buffer. `filter` replaces the module's own
-    choice.
+    choice, and `scale` the module's scale.
     """
 
     passes: Sequence[Pass]
     outputs: Mapping[str, str]
     once: Sequence[Pass] = ()
     filter: Filter | None = None
+    scale: float | None = None

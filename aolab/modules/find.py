@@ -11,6 +11,7 @@ from pathlib import Path
 from ..errors import FileError, ParameterError, suggestion
 from ..queries import query
 from .base import Module
+from .combined import combined
 
 Kinds = Mapping[str, type[Module]]
 
@@ -21,6 +22,7 @@ def find(module: "str | Module | type[Module]", modules: Kinds, **parameters: ob
     `module` is an instance, a class, or a text with optional parameters, as in `"ssao?steps=4"`:
 
     - a name of `modules`;
+    - `NAME+rsm`, a module with a part of another one: see `combined.py`;
     - `FILE.py:CLASS`, a class in a Python file; without CLASS, the only module of the file;
     - `FILE.frag:MODULE`, the declaration of another module with this fragment shader in place of its own.
 
@@ -42,6 +44,9 @@ def find(module: "str | Module | type[Module]", modules: Kinds, **parameters: ob
 def _named(name: str, modules: Kinds) -> type[Module]:
     if name in modules:
         return modules[name]
+    if "+" in name:
+        first, *parts = name.split("+")
+        return combined(name, _named(first, modules), parts)
     if match := re.fullmatch(r"(.+?\.(?:frag|glsl)):(.+)", name):
         return _with_shader(name, _existing(match[1]).resolve(), _named(match[2], modules))  # pyright: ignore[reportArgumentType]
     if match := re.fullmatch(r"(.+\.py)(?::(\w+))?", name):

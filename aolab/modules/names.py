@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from ..errors import ParameterError
 from ..gl.texture import FORMATS
-from .buffers import BUFFERS, CONTRACT, LIT, ON_DEMAND, SURFACES
+from .buffers import BUFFERS, CONTRACT, LIT, ON_DEMAND, REFLECTIVE, SURFACES
 from .filters import FILTERS
 from .occluders import OCCLUDERS
 from .parameters import Choice
@@ -19,8 +19,9 @@ OWNERS: dict[str, tuple[str, ...]] = {
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
         "light_spot_cos",
     ),
+    "the reflective shadow maps": ("rsm_tiles",),
     "the environment": ("irradiance_sh", "view_environment_sh"),
-    "the samples": ("kernel",),
+    "the samples": ("kernel", "rsm_kernel"),
     "the mesh": (
         "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission", "one_sided", "cut_outs",
     ),
@@ -55,6 +56,7 @@ def check_parameters(module: str, values: Iterable[str], attributes: Iterable[st
 def check_outputs(module: str, outputs: Mapping[str, str]) -> None:
     """Raise `ParameterError` for an output whose name the pipeline fills, or whose format breaks the name's meaning."""
     owners = dict.fromkeys(SURFACES | ON_DEMAND, "the surfaces") | dict.fromkeys(LIT, "the lighting")
+    owners |= dict.fromkeys(REFLECTIVE, "the reflective shadow maps")
     for name, format in outputs.items():
         plain = name.removesuffix("_raw")
         if plain in owners:

@@ -68,12 +68,13 @@ FILL = Pass("fill", "pipeline/fill.frag", {"light_share": CONTRACT["light_share"
 AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": LIT["ambient"].format})
 
 
-def reflect(irradiance: str, radiance: str) -> Pass:
-    """The pass that reflects the buffer `irradiance` diffusely, as `radiance`."""
+def reflect(irradiance: str, radiance: str, more: str = "") -> Pass:
+    """The pass that reflects the buffer `irradiance` diffusely, as `radiance`, and adds the radiance `more`."""
     return Pass(
         radiance,
         "pipeline/reflect.frag",
         {radiance: LIT["radiance"].format},
-        reads={"source": irradiance},
+        {"adds": bool(more)},
+        reads={"source": irradiance, "more": more or irradiance},
         writes={"reflected": radiance},
     )

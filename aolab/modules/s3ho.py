@@ -120,6 +120,13 @@ class S3HO(Marched):
     def sends(self) -> bool:
         return self.indirect
 
+    def openness(self) -> str:
+        """As in `_visibility`."""
+        return """
+        uniform sampler2D occlusion0;
+        float opennessAt(ivec2 pixel) { return clamp(1.0 - 1.128379 * texelFetch(occlusion0, pixel, 0).x, 0.0, 1.0); }
+        """
+
     def lighting(self) -> list[Pass]:
         *fills, direct = self.direct()
         if self.lights == "lobes":

@@ -72,6 +72,20 @@ class SSBN(Marched):
     def tables(self) -> dict[str, Cones]:
         return {"cone_environment": Cones()}
 
+    def openness(self) -> str:
+        """As in `_visibility`."""
+        share = "2.0 * dot(blocked.xyz, normal)" if self.weighting == "uniform" else "blocked.a"
+        return f"""
+        uniform sampler2D blocked_direction;
+        uniform sampler2D viewNormal;
+        uniform mat4 world_from_view;
+        float opennessAt(ivec2 pixel) {{
+            vec4 blocked = texelFetch(blocked_direction, pixel, 0);
+            vec3 normal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
+            return clamp(1.0 - {share}, 0.0, 1.0);
+        }}
+        """
+
     def lighting(self) -> list[Pass]:
         constants = {"cone_slices": SLICES, "cone_texels": TEXELS, **self._weights}
         return [*self.direct(), Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, constants)]

@@ -65,6 +65,12 @@ class SSDO(Marched):
         of_lights = {"light_samples": ways(16, seed, self.falloff).tobytes()} if self.light_steps else {}
         return super().samples(seed) | of_lights
 
+    def openness(self) -> str:
+        return """
+        uniform sampler2D open_light;
+        float opennessAt(ivec2 pixel) { return texelFetch(open_light, pixel, 0).a; }
+        """
+
     def lighting(self) -> Sequence[Pass | Estimate]:
         blocked = {"blocked": self.estimator == "blocked"}
         ambient = Pass("ambient", "ssdo.ambient.frag", AMBIENT.outputs, blocked)

@@ -16,6 +16,7 @@ RADIANCE = (  # linear RGB
     "open_light", "all_light",
 )  # fmt: skip
 DIRECTIONS = ("viewNormal", "bent_normal", "tangent")  # components in [-1, 1]
+SPREAD = ("rsm_position", "rsm_flux")  # three numbers of any size, shown as colours from the least to the largest
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
 
 BACKGROUND = np.array((198, 214, 230), np.uint8)  # pale blue: in no colour map used here
@@ -80,6 +81,11 @@ def buffer_pixels(name: str, values: np.ndarray, scale: Scale | None) -> np.ndar
     known = np.isfinite(values).all(axis=2, keepdims=True)
     values = np.where(known, values, 0)
     kind = name.removesuffix("_raw")
+    if kind in SPREAD:
+        drawn = values[values.any(axis=2)]
+        low, high = np.percentile(drawn, (0, 99.5), axis=0) if len(drawn) else np.zeros((2, 3))
+        low, high = (low, high) if kind == "rsm_position" else (0 * low, np.full(3, high.max()))
+        return srgb((values - low) / np.maximum(high - low, 1e-30) * values.any(axis=2, keepdims=True))
     if not _is_colour(kind, values):
         drawn = values.any(axis=2, keepdims=True)  # a direction of length 0 is none
         return np.where(drawn, np.rint(np.clip(values * 0.5 + 0.5, 0, 1) * 255).astype(np.uint8), BACKGROUND)
@@ -96,6 +102,8 @@ def scale_in_words(name: str, values: np.ndarray) -> str:
         return str(scale)
     if values.dtype == np.uint8:
         return "sRGB"
+    if kind in SPREAD:
+        return "black the least to white the largest, in sRGB"
     if kind in RADIANCE:
         return "filmic tone map, exposure 1, sRGB"
     return "linear 0 to 1, in sRGB" if _is_colour(kind, values) else "black -1 to white 1 in each channel"

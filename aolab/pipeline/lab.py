@@ -19,7 +19,7 @@ from ..gl.program import Programs
 from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
 from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
-from ..modules.buffers import BUFFERS, ON_DEMAND
+from ..modules.buffers import BUFFERS, ON_DEMAND, REFLECTIVE
 from ..modules.occluders.base import Occluders
 from ..scene import clipping
 from ..scene.camera import Camera
@@ -37,6 +37,8 @@ from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
+from .reflective import DEFAULT_SIZE as MAP_SIZE
+from .reflective import draw_reflective
 from .senders import senders
 from .shadows import ShadowMaps, ShadowSettings, draw_shadows
 from .state import FrameContext, SurfaceState
@@ -226,6 +228,7 @@ class Lab:
             if lights is not None:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
+        reflective = REFLECTIVE if sampled(state.frame) & REFLECTIVE.keys() else ()
         info = {
             "aolab": __version__,
             "renderer": context.renderer(),
@@ -248,21 +251,21 @@ class Lab:
             table=BUFFERS | {row.name: row for row in module.buffers},
             scene=scene,
             kept=kept,
-            later=Later(lighting.names(module), partial(self._lit, state, lights, display)),
+            later=Later([*lighting.names(module), *reflective], partial(self._lit, state, lights, display)),
         )
         self._waiting.add(result)
         return lend(result, self._pool, runner.lent)
 
     def _lights(self, frame: FrameContext) -> Lights:
-        """All that shines on the frame's scene."""
-        scene = frame.scene
+        """All that shines on the frame's scene, as its module reads it."""
+        scene, module = frame.scene, frame.module
         assert scene.environment is not None  # Scene fills it in
-        tables = self._environments.tables(scene.environment, frame.module.tables())
-        return Lights(
-            lighting.lamps(scene, self._shadow_maps(frame.rasterizer, ShadowSettings.of(frame.module))),
-            scene.environment,
-            tables,
-        )
+        tables = self._environments.tables(scene.environment, module.tables())
+        lamps = lighting.lamps(scene, self._shadow_maps(frame.rasterizer, ShadowSettings.of(module)))
+        reflective = None
+        if sampled(frame) & REFLECTIVE.keys():
+            reflective = draw_reflective(frame.rasterizer, lamps, int(module.numbers().get("rsm_resolution", MAP_SIZE)))
+        return Lights(lamps, scene.environment, tables, reflective)
 
     def _lit(
         self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
@@ -278,7 +281,9 @@ class Lab:
                 sender, sending = senders(state, buffers, lights)
                 known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
                 gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
-                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, gathered, view)}
+                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, buffers, gathered, view)}
+            if lights.reflective:
+                buffers |= lights.reflective.buffers
             sky = self._environments.of(lights.sky)
             buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
             refuse_exhaustion(f"the light of a frame of {view.size[0]}x{view.size[1]}")
@@ -303,14 +308,19 @@ class Lab:
         return self._shadows[1]
 
 
-def surface_formats(frame: FrameContext) -> dict[str, str]:
-    """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
+def sampled(frame: FrameContext) -> set[str]:
+    """The names of all buffers that a pass of the module, or its occluder kind, samples."""
     declared = frame.runner.programs.declared
-    sampled = {
+    names = {
         step.reads.get(name, name) for step in frame.module.all_passes() for name in declared(step.shader).samplers
     }
-    sampled |= declared(frame.occluders.glsl()).samplers
-    return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in sampled}
+    return names | declared(frame.occluders.glsl()).samplers
+
+
+def surface_formats(frame: FrameContext) -> dict[str, str]:
+    """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
+    names = sampled(frame)
+    return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
 
 
 def occluders(frame: FrameContext, large: Buffers) -> Occluders:

@@ -1,6 +1,6 @@
 """From surfaces and an estimate to a picture: direct and ambient light, a bounce, and the sum, tone mapped."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -18,6 +18,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from .estimate import estimate, steps
 from .pass_runner import Buffers, PassRunner
+from .reflective import ReflectiveMaps
 from .shadows import ShadowMaps
 from .state import SurfaceState
 
@@ -38,11 +39,15 @@ class Display:
 
 @dataclass(frozen=True, eq=False)
 class Lights:
-    """All that shines on a scene: its lamps with their shadow maps, its environment, and `tables` made of that."""
+    """All that shines on a scene: its lamps with their shadow maps, its environment, and `tables` made of that.
+
+    `reflective` are the lamps' reflective shadow maps, for modules that sample them.
+    """
 
     lamps: Bindings
     sky: Environment
     tables: Buffers
+    reflective: ReflectiveMaps | None = None
 
     def seen_from(self, view: View) -> Sequence[Bindings]:
         """The lights, and the environment in world space and in the view's."""
@@ -51,7 +56,8 @@ class Lights:
             "irradiance_sh": self.sky.irradiance_sh.astype(np.float32).tobytes(),
             "view_environment_sh": np.ascontiguousarray(radiance.T, np.float32).tobytes(),
         }
-        return self.lamps, Bindings("the environment", self.tables, environment)
+        reflected = [self.reflective.bindings] if self.reflective else []
+        return [self.lamps, Bindings("the environment", self.tables, environment), *reflected]
 
 
 def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
@@ -101,18 +107,27 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
     for step in frame.module.lighting():
         given = [Bindings("the estimate", state.estimate), *shining, Bindings("the lighting", lit)]
         if isinstance(step, Estimate):
-            lit |= estimate(state, step, given)
+            lit |= estimate(state.at_scale(step.scale), step, given)
         else:
-            surfaces = Bindings("the surfaces", state.large)
-            known = [surfaces, state.occluders.bindings, frame.parameters, frame.samples(frame.seeds[0]), *given]
-            lit |= steps(frame, [step], known)
+            known = [Bindings("the surfaces", state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
+            lit |= steps(frame, [step], [*known, *_included(state, step)])
     return lit
 
 
-def bounced(runner: PassRunner, surfaces: Buffers, bounce: Buffers, view: View) -> Buffers:
-    """`indirect`: the irradiance `bounce`, reflected."""
-    given = [Bindings("the surfaces", surfaces), Bindings("the bounce", bounce)]
-    return runner.run(reflect("bounce", "indirect"), given, view.size)
+def _included(state: SurfaceState, step: Pass) -> Iterator[Bindings]:
+    """The shader text that other parts give, where the pass includes it: each is compiled in, so that others do not."""
+    includes = state.frame.runner.programs.declared(step.shader).includes
+    if "occluders.glsl" in includes:
+        yield state.occluders.bindings
+    if "openness.glsl" in includes:
+        yield Bindings("the openness", includes={"openness.glsl": state.frame.module.openness()})
+
+
+def bounced(runner: PassRunner, surfaces: Buffers, lit: Buffers, bounce: Buffers, view: View) -> Buffers:
+    """`indirect`: the irradiance `bounce`, reflected, and the bounce that the lighting has computed."""
+    more = "lit" if "indirect" in lit else ""
+    known = {**surfaces, **bounce, **({more: lit["indirect"]} if more else {})}
+    return runner.run(reflect("bounce", "indirect", more), [Bindings("the bounce", known)], view.size)
 
 
 def compose(

@@ -12,6 +12,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import Rasterizer
+from .surfaces import shrink
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +90,14 @@ class SurfaceState:
     def known(self) -> Sequence[Bindings]:
         """The buffers at full size, for passes over the whole picture."""
         return Bindings("the surfaces", self.large), Bindings("the estimate", self.estimate)
+
+    def at_scale(self, scale: float | None) -> "SurfaceState":
+        """The same, with small surfaces of another scale; None is the module's own."""
+        if scale is None or scale == self.frame.module.scale:
+            return self
+        small_view = self.frame.view.scaled(scale) if scale < 1 else self.frame.view
+        small = shrink(self.frame.runner, self.large, self.frame.view, small_view) if scale < 1 else self.large
+        return replace(self, small=small, small_view=small_view)
 
     def under(self, rasterizer: Rasterizer) -> "SurfaceState":
         """The same, with other means to draw: those of a new frame."""

@@ -17,12 +17,15 @@ from aolab.modules.occluders import OCCLUDERS
 from aolab.modules.parameters import describe
 
 CHECKOUT = Path(__file__).parents[2]
-pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice"),  # nor is a floor
+    pytest.mark.filterwarnings("ignore:.* no reflective shadow map:aolab.errors.Notice"),
+]
 PARAMETERS = [(name, field) for name, module in MODULES.items() for field in module.model_fields]
 CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()]
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: its shader includes no occluders, and there is nothing to filter
-WITHOUT_EFFECT = {("none", "occluders"), ("none", "filter")}
+WITHOUT_EFFECT = {("none", "occluders"), ("none", "filter"), ("rsm", "occluders"), ("rsm", "shaded")}
 
 
 def differ(one: Frame, other: Frame) -> bool:

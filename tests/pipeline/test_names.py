@@ -26,7 +26,7 @@ def given(lab, scene, monkeypatch, module: str, **settings) -> dict[str, set[str
     return found
 
 
-@pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")
+@pytest.mark.filterwarnings("ignore:.*:aolab.errors.Notice")
 def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
     scene = boxes.replace(lights=(DirectionalLight((0.3, -1, 0.2)), PointLight((0, 3, 1))))
     found: dict[str, set[str]] = {}
@@ -39,8 +39,11 @@ def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
         frame = given(lab, scene, monkeypatch, "ssdo", bounces=1, **settings)
         for owner, names in frame.items():
             found.setdefault(owner, set()).update(names)
+    for owner, names in given(lab, scene, monkeypatch, "rsm").items():
+        found.setdefault(owner, set()).update(names)
     owners = reserved()
     shared = {"the view", "the lights", "the environment", "the mesh", "the samples", "the small view"}
+    shared.add("the reflective shadow maps")
     for owner in shared | {kind.label() for kind in OCCLUDERS.values()}:
         for name in found.get(owner, ()):
             assert name in owners, (owner, name)
