@@ -224,11 +224,11 @@ class Lab:
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
         module, view = frame.module, frame.view
         with self._lending(runner):
-            lights = self._lights(frame) if module.lit else None
-            if lights is not None:
+            reflective = REFLECTIVE if sampled(frame) & REFLECTIVE.keys() else ()
+            lights = self._lights(frame) if module.lit or reflective else None
+            if module.lit and lights is not None:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
-        reflective = REFLECTIVE if sampled(state.frame) & REFLECTIVE.keys() else ()
         info = {
             "aolab": __version__,
             "renderer": context.renderer(),

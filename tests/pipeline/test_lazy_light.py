@@ -49,7 +49,7 @@ def test_the_buffers_are_listed_before_they_are_computed(lab, boxes, name):
 @pytest.mark.parametrize("name", MODULES)
 def test_other_frames_in_between_change_nothing(lab, boxes, plane, name):
     options = OPTIONS.get(name, {})
-    lit = boxes.replace(lights=(aolab.PointLight((1, 2, 1), 20.0),))
+    lit = boxes.replace(lights=(aolab.SpotLight((1, 3, 1), (0, -1, 0), (20.0, 20.0, 20.0)),))
     expected = buffers_of(lab.render(lit, name, **options).complete())
     frame = lab.render(lit, name, **options)
     for seed in range(3):  # other lights, sizes and environments; their textures go back to the pool

@@ -22,7 +22,7 @@ def given(lab, scene, monkeypatch, module: str, **settings) -> dict[str, set[str
 
     monkeypatch.setattr(pass_runner, "joined", watched)
     monkeypatch.setattr(rasterizer, "joined", watched)
-    lab.render(scene, module, **settings)
+    lab.render(scene, module, **settings).complete()
     return found
 
 
