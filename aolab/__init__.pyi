@@ -21,6 +21,7 @@ from .modules import SSDO as SSDO
 from .modules import AmbientTransfer as AmbientTransfer
 from .modules import Module as Module
 from .modules import Unoccluded as Unoccluded
+from .modules import VoxelView as VoxelView
 from .modules.parameters import parameter as parameter
 from .modules.passes import Pass as Pass
 from .modules.question import Question as Question

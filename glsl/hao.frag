@@ -20,6 +20,7 @@ const int steps;
 const bool lifted;               // off the surface, for occluders in pixels
 
 uniform float radius;            // d_max, scene units
+uniform float spread;            // half-angle of the cone, in right angles
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
 
@@ -38,6 +39,13 @@ bool isEdgeOn(vec3 normal, vec3 viewPos) {
     return across > MOST * abs(dot(normal, viewPos / viewPos.z));
 }
 
+// The direction with its elevation moved by `share` of the stratum that it has for itself, within the cone.
+vec3 jittered(vec3 direction, float share) {
+    float depth = 1.0 - cos(0.5 * PI * spread);
+    float z = 1.0 - depth * fract((1.0 - direction.z) / depth + share / float(directions));
+    return vec3(direction.xy * sqrt((1.0 - z * z) / max(1.0 - direction.z * direction.z, 1e-6)), z);
+}
+
 void main() {
     visibility = 1.0;
     ivec2 pixel = ivec2(gl_FragCoord.xy);
@@ -50,14 +58,15 @@ void main() {
 
     vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;
     vec3 worldNormal = mat3(world_from_view) * normal;
-    vec2 noise = hashed(ivec3(floor(worldPos / (NOISE_CELL * radius))) + 7919 * ivec3(round(3.0 * worldNormal)));
+    vec3 noise = hashed(ivec3(floor(worldPos / (NOISE_CELL * radius))) + 7919 * ivec3(round(3.0 * worldNormal)));
     float c = cos(2.0 * PI * noise.x), s = sin(2.0 * PI * noise.x);
     mat3 frame = frameAround(normal);
     frame = mat3(c * frame[0] + s * frame[1], c * frame[1] - s * frame[0], normal);
 
     float occlusion = 0.0, cosines = 0.0;
     for (int i = 0; i < directions; ++i) {
-        vec3 way = frame * kernel[i].xyz * radius;
+        vec3 direction = jittered(kernel[i].xyz, noise.z);
+        vec3 way = frame * direction * radius;
         float nearest = 1.0;  // a share of the radius, where the kernel is 0
         for (int j = 0; j < steps; ++j) {
             float along = (float(j) + fract(kernel[i].w + noise.y)) / float(steps);
@@ -65,7 +74,7 @@ void main() {
             bool hit = isBlocked(receiver, receiver.viewPos + way * along, radius, occluder);
             nearest = min(nearest, hit ? along : 1.0);
         }
-        float cosine = kernel[i].z;                          // ω_i·n
+        float cosine = direction.z;                          // ω_i·n
         occlusion += wendland(nearest, 1.0) * cosine;        // Eq. 2
         cosines += cosine;
     }

@@ -27,6 +27,8 @@ PERIOD = 4  # pixels: the interleaved pattern of sample sets repeats after so ma
 # each part is the difference of two neighbours in a chain of results, from the module's frame to the truth
 PARTS = ("sampling noise", "filter", "few steps", "hidden layers", "off-screen geometry", "method")
 SENDERS = "limited senders"
+COARSE = "coarse voxels"
+FINEST = 1024  # voxels along a side
 BOUNCED = ("indirect", "radiance", "image")  # the buffers that hold a bounce
 
 
@@ -39,7 +41,9 @@ class Explanation:
     - `few steps`: the unfiltered mean, against the same with directions marched as densely as a ray;
     - `hidden layers`: the same, with the camera's one layer of depth against four peeled layers;
     - `off-screen geometry`: the same, against a render with a margin drawn around the image;
-    - `method`: the rest, against rays that answer the module's own question;
+    - `coarse voxels`, of `occluders="voxels"`: the same, against a grid of twice as many voxels along each side;
+    - `method`: the rest, against rays that answer the module's own question. For voxels, these rays meet the exact
+      triangles, and there are no hidden layers;
     - `limited senders`, of buffers with a bounce: these rays against rays whose senders receive the environment's light
       from any distance, not only within the module's radius.
 
@@ -126,6 +130,9 @@ def explain(
     bare = module.replace(filter="none")
     marched = bare.replace(steps=max(STEPS, bare.steps)) if "steps" in type(module).model_fields else bare  # type: ignore[attr-defined]
     layered = marched.replace(occluders="layers", layers=LAYERS) if module.occluders == "depth" else marched
+    fine = layered
+    if module.occluders == "voxels":
+        fine = layered.replace(voxels=min(2 * layered.model_dump()["voxels"], FINEST))
     converged = {"seed": seed, "accumulate": frames, "camera": camera}
 
     frame = lab.render(scene, module, camera=camera, seed=seed)
@@ -142,10 +149,11 @@ def explain(
         lab.render(scene, marched, **converged)[buffer],
         lab.render(scene, layered, **converged)[buffer],
         with_margin(lab, scene, layered, camera, size, seed, frames)[buffer],
+        *([with_margin(lab, scene, fine, camera, size, seed, frames)[buffer]] if fine is not layered else []),
         *(truth[buffer] for truth in truths),
     ]
     chain = [np.where(_like(frame.mask, values), values, np.nan).astype(np.float64) for values in chain]
-    names = [*PARTS, SENDERS][: len(chain) - 1]
+    names = [*PARTS[:-1], *([COARSE] if fine is not layered else []), PARTS[-1], SENDERS][: len(chain) - 1]
     parts = {name: first - second for name, (first, second) in zip(names, pairwise(chain), strict=True)}
     return Explanation(frame, truths[-1], buffer, chain[0] - chain[-1], parts)
 

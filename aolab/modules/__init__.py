@@ -17,6 +17,7 @@ from .s3ho import S3HO
 from .ssao import SSAO
 from .ssbn import SSBN
 from .ssdo import SSDO
+from .voxel_view import VoxelView
 
 MODULES: dict[str, type[Module]] = {
     module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN, AmbientTransfer, RotatedSSAO, RSM)
@@ -42,5 +43,5 @@ sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, 
 
 __all__ = [
     "HAO", "MODULES", "RSM", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "Module", "ModuleName", "RotatedSSAO",
-    "Unoccluded", "find", "known_buffers",
+    "Unoccluded", "VoxelView", "find", "known_buffers",
 ]  # fmt: skip

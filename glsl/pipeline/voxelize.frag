@@ -23,19 +23,23 @@ const float NOTHING = 1e30;
 const float INSET = 1e-4;    // of a pixel: a triangle that lies in the side of two pixels belongs to one of them
 const float THIN = 1e-3;     // pixels: rounding makes the area of narrower triangles meaningless, in grids of 1024
 
-// The signed area of the triangle from an edge to `point`, twice.
-float areaTo(vec2 point, vec3 from, vec3 to) {
-    return (to.x - from.x) * (point.y - from.y) - (to.y - from.y) * (point.x - from.x);
-}
+// Barycentric coordinates at this pixel's centre, and their change by a pixel in x and in y; negative coordinates if the camera
+// sees the triangle edge-on.
+struct Weights {
+    vec3 here;
+    vec3 byX;
+    vec3 byY;
+};
 
-// Barycentric coordinates of a point of the picture; negative ones if the camera sees the triangle edge-on.
-vec3 weightsAt(vec2 point) {
-    vec2 one = corner[1].xy - corner[0].xy, two = corner[2].xy - corner[0].xy, three = two - one;
-    vec3 areas = vec3(areaTo(point, corner[1], corner[2]), areaTo(point, corner[2], corner[0]),
-                      areaTo(point, corner[0], corner[1]));
+Weights weightsHere() {
+    vec2 a = corner[0].xy - gl_FragCoord.xy, b = corner[1].xy - gl_FragCoord.xy, c = corner[2].xy - gl_FragCoord.xy;
+    vec3 areas = vec3(b.x * c.y - b.y * c.x, c.x * a.y - c.y * a.x, a.x * b.y - a.y * b.x);  // twice
+    vec3 acrossX = vec3(b.y - c.y, c.y - a.y, a.y - b.y), acrossY = vec3(c.x - b.x, a.x - c.x, b.x - a.x);
     float whole = areas.x + areas.y + areas.z;
-    float longest = sqrt(max(dot(one, one), max(dot(two, two), dot(three, three))));
-    return abs(whole) > THIN * longest ? areas / whole : vec3(-1.0);
+    vec3 squares = acrossX * acrossX + acrossY * acrossY;
+    float longest = sqrt(max(squares.x, max(squares.y, squares.z)));
+    if (abs(whole) <= THIN * longest) return Weights(vec3(-1.0), vec3(0.0), vec3(0.0));
+    return Weights(areas / whole, acrossX / whole, acrossY / whole);
 }
 
 float depthOf(vec3 weights) {
@@ -55,23 +59,22 @@ void addEdge(inout vec2 range, vec3 from, vec3 to, vec2 low, vec2 high) {
 }
 
 // The least and greatest depth of the triangle within this pixel's square; empty where it does not touch the square.
-vec2 exactRange() {
+vec2 exactRange(Weights weights) {
     vec2 low = gl_FragCoord.xy - 0.5 + INSET, high = gl_FragCoord.xy + 0.5 - INSET;
     vec2 range = vec2(NOTHING, -NOTHING);
     for (int i = 0; i < 3; ++i) addEdge(range, corner[i], corner[(i + 1) % 3], low, high);
     for (int i = 0; i < 4; ++i) {
-        vec3 weights = weightsAt(mix(low, high, vec2(i & 1, i >> 1)));
-        float depth = depthOf(weights);
-        bool inside = min(weights.x, min(weights.y, weights.z)) >= 0.0;
+        vec3 there = weights.here + (float(i & 1) - 0.5) * weights.byX + (float(i >> 1) - 0.5) * weights.byY;
+        float depth = depthOf(there);
+        bool inside = min(there.x, min(there.y, there.z)) >= 0.0;
         if (inside) range = vec2(min(range.x, depth), max(range.y, depth));
     }
     return range;
 }
 
 // The depths of the plane over this pixel's square, but not beyond the triangle's corners.
-vec2 planeRange(vec3 weights) {
-    float depth = depthOf(weights);
-    float reach = 0.5 * (abs(dFdx(depth)) + abs(dFdy(depth)));
+vec2 planeRange(Weights weights) {
+    float depth = depthOf(weights.here), reach = 0.5 * (abs(depthOf(weights.byX)) + abs(depthOf(weights.byY)));
     vec3 depths = vec3(corner[0].z, corner[1].z, corner[2].z);
     float least = min(depths.x, min(depths.y, depths.z)), greatest = max(depths.x, max(depths.y, depths.z));
     return clamp(depth + vec2(-reach, reach), least, greatest);
@@ -86,12 +89,12 @@ uint bitsBetween(int first, int last, int start) {
 }
 
 void main() {
-    vec3 weights = weightsAt(gl_FragCoord.xy);
-    vec3 nearest = clamp(weights, 1e-6, 1.0);
+    Weights weights = weightsHere();
+    vec3 nearest = clamp(weights.here, 1e-6, 1.0);
     nearest /= nearest.x + nearest.y + nearest.z;
     vec2 uv = nearest.x * cornerUv[0] + nearest.y * cornerUv[1] + nearest.z * cornerUv[2];
     if (isHole(baseColor(uv, vec4(dot(nearest, cornerAlpha))).a, uv, 0.0)) discard;
-    vec2 range = clamp(voxel_exact ? exactRange() : planeRange(weights), -1.0, float(slices) + 1.0);
+    vec2 range = clamp(voxel_exact ? exactRange(weights) : planeRange(weights), -1.0, float(slices) + 1.0);
     int first = int(floor(range.x)), last = int(floor(range.y));
     for (int i = 0; i < targets; ++i) {
         for (int k = 0; k < 4; ++k) bits[i][k] = bitsBetween(first, last, 128 * i + 32 * k);

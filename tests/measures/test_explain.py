@@ -107,3 +107,14 @@ def test_bad_requests_name_the_alternatives(boxes):
         aolab.explain(boxes, "ssao", buffer="visibilty", **SMALL)
     with pytest.raises(aolab.ParameterError, match="frames = 1"):
         aolab.explain(boxes, "ssao", **{**SMALL, "frames": 1})
+
+
+def test_coarse_voxels_are_a_part_that_a_finer_grid_cures(boxes):
+    options = {**SMALL, "frames": 4, "scale": 1.0, "steps": 32}
+    coarse = aolab.explain(boxes, "hao", voxels=64, **options)
+    fine = aolab.explain(boxes, "hao", voxels=512, **options).table()
+    table = coarse.table()
+    assert coarse.residual < 1e-6
+    assert table["hidden layers"]["rmse"] == 0
+    assert table["coarse voxels"]["rmse"] > 2 * fine["coarse voxels"]["rmse"]
+    assert "coarse voxels" not in aolab.explain(boxes, "ssao", **{**options, "frames": 2}).table()

@@ -51,6 +51,28 @@ EDITS = {
     "no lobes": (("s3ho.direct.frag", LOBE, "max(dot(normal, viewToLight), 0.0)"),),
     # SSBN
     "cones around the normal": (("ssbn.ambient.frag", "> 1e-12 ? bent", "> 1e-12 ? worldNormal"),),
+    # HAO
+    "no voxels": (("lib/voxel_grid.glsl", ">> uint(voxel.z & 31)) & 1u) == 1u", ">> uint(voxel.z & 31)) & 1u) > 1u"),),
+    "half of the slices": (
+        ("pipeline/voxelize.frag", "bits[i][k] = bitsBetween(", "bits[i][k] = 0x55555555u & bitsBetween("),
+    ),
+    "voxels of twelve slices": (
+        ("pipeline/voxelize.frag", "last = int(floor(range.y))", "last = int(floor(range.y)) + 12"),
+    ),
+    "the receiver's own voxels": (("occluders/voxels.glsl", "return !own && ", "return "),),
+    "voxels of the picture alone": (
+        ("occluders/voxels.glsl", "return !own && ", "vec2 uv; return !own && isSeen(occluder, uv) && "),
+        ("occluders/voxels.glsl", "// Is the view-space point", "bool isSeen(Occluder occluder, out vec2 uv);\n//"),
+    ),
+    "a cone three times as wide": (
+        ("hao.frag", "jittered(kernel[i].xyz, noise.z)", "normalize(kernel[i].xyz * vec3(3.0, 3.0, 1.0))"),
+    ),
+    "no falloff": (("lib/wendland.glsl", "return rest", "return share < 1.0 ? 1.0 : rest"),),
+    "one ray for all": (("hao.frag", "jittered(kernel[i].xyz", "jittered(kernel[0].xyz"),),
+    "a filter without neighbours": (
+        ("pipeline/wendland.frag", "wendland(abs(float(i))", "wendland(64.0 * abs(float(i))"),
+    ),
+    "noise of the screen": (("hao.frag", "floor(worldPos / (NOISE_CELL * radius))", "vec3(gl_FragCoord.xy, 0.0)"),),
 }
 
 SMALL = {
@@ -61,6 +83,12 @@ SMALL = {
     ("ssdo", "fig7"): {"size": (112, 63), "rays": 64},
     ("ssdo", "fig13"): {"rays": 128},
     ("ssdo", "table1"): {"size": (160, 120), "repeats": 1},
+    ("hao", "fig4"): {"rays": 64},
+    ("hao", "fig5"): {"seeds": 3},
+    ("hao", "fig6"): {"size": (96, 72), "repeats": 1},
+    ("hao", "fig7"): {"size": (160, 120), "rays": 32, "repeats": 1},
+    ("hao", "fig8"): {"rays": 32},
+    ("hao", "fig9"): {"rays": 64},
     ("s3ho", "fig1"): {"size": (240, 135), "rays": 64},
     ("s3ho", "fig6"): {"size": (96, 54), "rays": 64},
     ("s3ho", "fig7"): {"rays": 512, "seeds": 3},

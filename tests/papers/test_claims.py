@@ -5,6 +5,8 @@ import json
 import pytest
 
 from aolab.papers.figure import Need, title, verdict
+from aolab.papers.hao.fig6 import claimed as claimed_by_haos_figure_6
+from aolab.papers.hao.fig7 import claimed as claimed_by_haos_figure_7
 from aolab.papers.s3ho.table1 import PAPER as S3HO_TIMES
 from aolab.papers.s3ho.table1 import claimed as claimed_by_s3hos_table
 from aolab.papers.ssdo.fig1 import claimed as claimed_by_ssdos_figure_1
@@ -77,6 +79,27 @@ def ratios(**slower):
 def test_s3hos_table_holds_of_its_own_times_and_not_of_others(slower):
     assert not unmet(claimed_by_s3hos_table(ratios()))
     assert len(unmet(claimed_by_s3hos_table(ratios(**slower)))) >= 3  # at each number of directions
+
+
+def haos_costs(grid=1.0, rays=1.0):
+    """Frames of 100 ms whose rays take 80 ms at 32 rays; more voxels and more rays add their times the factors."""
+    frames = {
+        "voxels": {64: 100.0, 128: 101.0, 256: 100.0 + 5.0 * grid},
+        "directions": {16: 60.0, 32: 100.0, 64: 180.0, 128: 60.0 + 280.0 * rays},
+    }
+    return frames, {16: 40.0, 128: 40.0 + 280.0 * rays}
+
+
+def test_haos_figure_6_fails_if_the_grid_costs_as_much_as_rays_or_rays_cost_nothing():
+    assert not unmet(claimed_by_haos_figure_6(*haos_costs()))
+    assert len(unmet(claimed_by_haos_figure_6(*haos_costs(grid=40)))) == 2
+    assert unmet(claimed_by_haos_figure_6(*haos_costs(rays=0.3)))
+    assert unmet(claimed_by_haos_figure_6(*haos_costs(rays=2)))
+
+
+def test_haos_figure_7_fails_if_triangles_cost_a_tenth_of_the_frame():
+    assert not unmet(claimed_by_haos_figure_7(50.0, 55.0, 100.0))
+    assert unmet(claimed_by_haos_figure_7(50.0, 61.0, 100.0))
 
 
 # --- two of the figures here, too: the others, and more of their mutations, are run by `make figures`

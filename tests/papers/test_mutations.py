@@ -22,8 +22,19 @@ MUTATIONS = {
     ("s3ho", "fig7"): (OPEN, "two bands", "one direction for all", "a quarter of the samples"),
     ("s3ho", "fig8"): ("two bands", "green light for all colours", "cones around the normal"),
     ("s3ho", "fig9"): ("two bands", "a quarter of the samples", "coefficients of three senders"),
+    ("hao", "fig2"): ("half of the slices", "voxels of twelve slices"),
+    ("hao", "fig4"): ("a cone three times as wide", "no falloff", "no voxels"),
+    ("hao", "fig5"): ("one ray for all", "a filter without neighbours"),
+    ("hao", "fig7"): ("no voxels", "the receiver's own voxels"),
+    ("hao", "fig8"): ("no voxels", "noise of the screen"),
+    ("hao", "fig9"): ("no voxels", "voxels of the picture alone"),
 }
-TIMED = {("ssdo", "fig1"), ("ssdo", "table1"), ("s3ho", "table1")}  # tests/papers/test_claims.py has theirs
+TIMED = {
+    ("hao", "fig6"),
+    ("ssdo", "fig1"),
+    ("ssdo", "table1"),
+    ("s3ho", "table1"),
+}  # tests/papers/test_claims.py has theirs
 
 
 @pytest.mark.parametrize(

@@ -247,3 +247,22 @@ def test_a_scene_far_from_the_origin_has_the_same_voxels(lab, boxes):
     settings = {"occluders": "voxels", "radius": 1.0, "scale": 1.0}
     near_one, far_one = (lab.render(one, "ssao", **settings)["visibility"] for one in (boxes, far))
     assert np.nanmean(np.abs(near_one - far_one)) < 2e-3
+
+
+def test_the_picture_of_the_grid_covers_the_surface_and_little_more(lab, boxes):
+    """HAO 2009, Fig. 2: a finer grid is nearer to the silhouettes."""
+    camera = Camera((0.5, 0.4, 5), (0, 1.2, 0), fov=45)
+    excess = []
+    for voxels in (64, 256):
+        frame = lab.render(boxes, aolab.VoxelView(voxels=voxels), camera=camera, size=(96, 72))
+        drawn = frame["voxel_grid"].min(axis=-1) < 1
+        assert drawn[frame.mask].all()
+        excess.append((drawn & ~frame.mask).sum())
+    assert 0 < excess[1] < 0.5 * excess[0]
+    above = frame["voxel_grid"][:3]
+    assert (above == 1).all()  # sky
+
+
+def test_the_picture_of_the_grid_needs_voxels(lab, boxes):
+    with pytest.raises(ParameterError, match="occluders = 'depth' is not valid: voxels"):
+        lab.render(boxes, aolab.VoxelView, occluders="depth")
