@@ -10,7 +10,10 @@ from module_settings import contexts
 from aolab import Scene
 from aolab.modules import MODULES, Module
 
-pytestmark = pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")  # nor is a floor
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice"),  # nor is a floor
+    pytest.mark.filterwarnings("ignore:.* has no height map:aolab.errors.Notice"),
+]
 
 HALF = 2e-3  # roundings to half floats
 
