@@ -21,6 +21,11 @@ MUTATIONS = {
     ("s3ho", "fig6"): (OPEN, "two bands", "half the occlusion"),
     ("s3ho", "fig7"): (OPEN, "two bands", "one direction for all", "a quarter of the samples"),
     ("s3ho", "fig8"): ("two bands", "green light for all colours", "cones around the normal"),
+    ("ambient_transfer", "fig1"): ("half the distances", "linear in place of the square root", "a short exponential"),
+    ("ambient_transfer", "fig5"): ("one set for all pixels", "no neighbours in the filter"),
+    ("ambient_transfer", "fig7"): ("no limit to depth", "thin surfaces", "half the distances"),
+    ("ambient_transfer", "fig8"): ("black senders", "white senders"),
+    ("ambient_transfer", "fig9"): ("no relief", "grey senders", "black senders"),
     ("s3ho", "fig9"): ("two bands", "a quarter of the samples", "coefficients of three senders"),
 }
 TIMED = {("ssdo", "fig1"), ("ssdo", "table1"), ("s3ho", "table1")}  # tests/papers/test_claims.py has theirs
