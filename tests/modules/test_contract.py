@@ -39,7 +39,10 @@ PARAMETERS = [(name, field) for name, module in MODULES.items() for field in mod
 CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()]
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: its shader includes no occluders, and there is nothing to filter
-WITHOUT_EFFECT = {("none", "occluders"), ("none", "filter"), ("rsm", "occluders"), ("rsm", "shaded")}
+WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals")} | {
+    ("rsm", "occluders"),
+    ("rsm", "shaded"),
+}
 
 
 def differ(one: Frame, other: Frame) -> bool:

@@ -1,6 +1,5 @@
 """Ambient transfer, figure 7: false shadows of a far foreground, without and with their elimination."""
 
-
 from ...gl.texture import Size
 from ...modules.ambient_transfer import AmbientTransfer
 from ...pictures.sheet import gray

@@ -79,7 +79,7 @@ def _painted(scene: Scene, albedo: float) -> Scene:
     """The scene with one albedo for all surfaces."""
     instances = []
     for one in scene.instances:
-        material = Material((albedo,) * 3, height=one.mesh.material.height)
+        material = Material((albedo, albedo, albedo), height=one.mesh.material.height)
         instances.append(replace(one, mesh=replace(one.mesh, material=material)))
     return scene.replace(instances=tuple(instances))
 
