@@ -43,6 +43,7 @@ from .scene.environment import Environment as Environment
 from .scene.lights import DirectionalLight as DirectionalLight
 from .scene.lights import PointLight as PointLight
 from .scene.lights import SpotLight as SpotLight
+from .scene.mesh import HeightMap as HeightMap
 from .scene.mesh import Material as Material
 from .scene.mesh import Mesh as Mesh
 from .scene.mesh import Texture as Texture

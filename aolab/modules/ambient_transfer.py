@@ -113,4 +113,4 @@ class AmbientTransfer(Module):
         measure = self.chosen("measure")
         assert isinstance(measure, Measure)
         sigma = {"sigma": values["sigma"]} if "sigma" in values else {}
-        return Question(values["radius"], measure.fading, measure.fading, limited_senders=True, **sigma)
+        return super().question().replace(falloff=measure.fading, measure=measure.fading, **sigma)

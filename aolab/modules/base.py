@@ -173,6 +173,9 @@ class Module(Parameters):
     filter: FilterByName = parameter(
         "box4", "Noise removal: the mean of 4×4 pixels, or a separable 8×8 bilateral; both stay on the same surface."
     )
+    normals: Literal["shading", "geometric"] = parameter(
+        "shading", "The normals of the estimate: bent by normal and height maps, or the vertices' own (`geometric`)."
+    )
     scale: float = parameter(
         1.0,
         "Resolution of the estimate as a share of the image's, brought up by joint bilateral upsampling.",
@@ -339,7 +342,7 @@ class Module(Parameters):
     def question(self) -> Question:
         """The quantity that a `resolved` module approximates: `aolab.reference(scene, like=module)` computes it."""
         values = self.model_dump()
-        return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True)
+        return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True, normals=self.normals)
 
     def resolved(self, scene: Scene) -> Self:
         """The module with a number for this scene in place of every `auto`."""

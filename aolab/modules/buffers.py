@@ -41,11 +41,17 @@ SURFACES = _table(
     Buffer("albedo", 3, "RGBA16F", "", 0, "share", "The linear diffuse albedo of the surface."),
 )
 
-# drawn with them if a pass of the module samples them; emission also if a material of the scene has some
+# drawn with them if a pass of the module samples them; emission also if a material of the scene has some, and the
+# geometric normal if a normal map or a height map bends others
 ON_DEMAND = _table(
     Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
     Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),
     Buffer("emission", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The radiance that the material sends by itself."),
+    Buffer("geometricNormal", 3, "RGBA16F", "", 0, "direction", "The unit normal without normal and height maps."),
+    Buffer(
+        "reliefU", 4, "RGBA32F", "", 0, "numbers", "The gradient of u in view space; the height map's number from 1."
+    ),
+    Buffer("reliefV", 4, "RGBA32F", "", 0, "numbers", "The gradient of v in view space; the scale of the heights."),
     Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
 )
 

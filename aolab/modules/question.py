@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, replace
 from math import inf
-from typing import Self
+from typing import Literal, Self
 
 from ..errors import ParameterError, suggestion
 from ..maths.fading import CURVES, Fading
@@ -21,7 +21,9 @@ class Question:
       the cosine-weighted mean over the cone, so that an open point has the visibility 1;
     - `bounces`: the greatest number of reflections in `transfer_multibounce`;
     - `limited_senders`: the environment's light on what blocks is limited by `radius` and `falloff`, as in modules,
-      where each sender is a pixel with its own visibility. Without it, senders receive the physical light.
+      where each sender is a pixel with its own visibility. Without it, senders receive the physical light;
+    - `normals`: the hemisphere's axis, the normal that normal and height maps bend (`shading`), or the vertices' own
+      (`geometric`).
 
     Raises `ParameterError` for a value out of its range.
     """
@@ -33,6 +35,7 @@ class Question:
     spread: float = 1.0
     bounces: int = 8
     limited_senders: bool = False
+    normals: Literal["shading", "geometric"] = "shading"
 
     def __post_init__(self) -> None:
         if self.radius is not None and not (isinstance(self.radius, (int, float)) and self.radius > 0):
@@ -47,6 +50,8 @@ class Question:
             raise ParameterError(f"spread = {self.spread!r} is outside (0, 1]")
         if not isinstance(self.bounces, int) or self.bounces < 0:
             raise ParameterError(f"bounces = {self.bounces!r} is not a whole number from 0 on")
+        if self.normals not in ("shading", "geometric"):
+            raise ParameterError(f"normals = {self.normals!r} is not one of: shading, geometric")
 
     def _check_fading(self, name: str, fading: Fading) -> None:
         if isinstance(fading, str):

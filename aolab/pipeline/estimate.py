@@ -10,6 +10,7 @@ from ..scene.view import View
 from . import filters
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
+from .surfaces import facing
 
 
 def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()) -> Buffers:
@@ -20,7 +21,7 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
     frame, runner = state.frame, state.frame.runner
     given = list(given)
     if what.once:
-        known = [Bindings("the surfaces", state.large), frame.parameters, *given]
+        known = [Bindings("the surfaces", facing(state.large, frame.module.normals)), frame.parameters, *given]
         given.append(Bindings("the passes before the samples", steps(frame, what.once, known)))
     if len(frame.seeds) == 1:
         formats = dict(what.outputs)
@@ -28,7 +29,8 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
     else:
         formats = {name: filters.single_precision(format) for name, format in what.outputs.items()}
         raw = _accumulated(state, what, given, formats)
-    small, large = (state.small, state.small_view), (state.large, frame.view)
+    # a filter compares distances to the tangent plane, which no map bends
+    small, large = (facing(state.small, "geometric"), state.small_view), (facing(state.large, "geometric"), frame.view)
     result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large)
     return {**{f"{name}_raw": texture for name, texture in raw.items()}, **result}
 
@@ -70,7 +72,7 @@ def _accumulated(state: SurfaceState, what: Estimate, given: Sequence[Bindings],
 def _passes(state: SurfaceState, what: Estimate, given: Sequence[Bindings], seed: int) -> Buffers:
     frame = state.frame
     known = [
-        Bindings("the surfaces", state.small),
+        Bindings("the surfaces", facing(state.small, frame.module.normals)),
         state.occluders.bindings,
         frame.parameters,
         frame.samples(seed),

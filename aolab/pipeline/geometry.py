@@ -12,6 +12,7 @@ from ..gl.source import Constant
 from ..gl.texture import refuse_exhaustion
 from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Instance, Scene
+from .reliefs import ReliefStore
 from .textures import upload
 
 # of each mesh in turn; see glsl/lib/base_color.glsl
@@ -22,12 +23,15 @@ MESH_UNIFORMS: dict[str, object] = {
     "mesh_number": 0.0,
     "single_sided": False,
     "emission": (0.0, 0.0, 0.0),
+    "normal_scale": 1.0,
+    "normal_mapped": False,
+    "relief_number": 0,
 }
-MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1}  # of each mesh in turn, by their units
+MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1, "normal_texture": 2}  # of each mesh in turn, by their units
 
 
 def kinds_of(scene: Scene) -> dict[str, Constant]:
-    """Constants: whether some mesh of the scene is single-sided, and whether some has holes or is blended.
+    """Constants: whether some mesh is single-sided, has holes or is blended, or has a map of normals or heights.
 
     Most scenes have none of them, and their shaders are spared the tests.
     """
@@ -35,6 +39,7 @@ def kinds_of(scene: Scene) -> dict[str, Constant]:
     return {
         "one_sided": any(not material.double_sided for material in materials),
         "cut_outs": any(material.blend or material.alpha_cutoff is not None for material in materials),
+        "bent_normals": scene.bends_normals,
     }
 
 
@@ -44,6 +49,7 @@ class _GpuMesh:
     indices: moderngl.Buffer
     instances: moderngl.Buffer
     placement: bytes
+    tangents: moderngl.Buffer | None = None  # 4f; made when a program reads them
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)  # by program
 
 
@@ -52,16 +58,17 @@ class Geometry:
 
     def __init__(self) -> None:
         self._meshes: weakref.WeakKeyDictionary[Mesh, _GpuMesh] = weakref.WeakKeyDictionary()
-        self._textures: weakref.WeakKeyDictionary[Texture, dict[float | None, moderngl.Texture]]
-        self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut
+        self._textures: weakref.WeakKeyDictionary[Texture, dict[object, moderngl.Texture]]
+        self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut, and of numbers
         self._white: moderngl.Texture | None = None
+        self.reliefs = ReliefStore()
 
     def draw(self, scene: Scene, program: Program) -> None:
         """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`."""
         for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
             gpu = self._place(mesh, placements, scene.shader_origin)
-            self._use_material(mesh, number, program)
-            self._array(gpu, program).render(instances=len(placements))
+            self._use_material(mesh, number, program, scene)
+            self._array(mesh, gpu, program).render(instances=len(placements))
 
     @staticmethod
     def _by_mesh(scene: Scene) -> dict[Mesh, list[Instance]]:
@@ -94,17 +101,22 @@ class Geometry:
         refuse_exhaustion(f"mesh '{mesh.name}' of {interleaved.nbytes / 1e6:.0f} MB")
         return gpu
 
-    def _array(self, gpu: _GpuMesh, program: Program) -> moderngl.VertexArray:
+    def _array(self, mesh: Mesh, gpu: _GpuMesh, program: Program) -> moderngl.VertexArray:
         key = program.gl.glo
         if key not in gpu.arrays:
             content = [
                 (gpu.attributes, "3f 3f 2f 4f", "local_position", "local_normal", "texture_uv", "vertex_color"),
                 (gpu.instances, "16f/i", "world_from_local"),
             ]
+            if "local_tangent" in program.gl:
+                if gpu.tangents is None:
+                    tangents = np.zeros((len(mesh.vertices), 4)) if mesh.tangents is None else mesh.tangents
+                    gpu.tangents = context.get().buffer(tangents.astype(np.float32))
+                content.append((gpu.tangents, "4f", "local_tangent"))
             gpu.arrays[key] = context.get().vertex_array(program.gl, content, gpu.indices, skip_errors=True)
         return gpu.arrays[key]
 
-    def _use_material(self, mesh: Mesh, number: int, program: Program) -> None:
+    def _use_material(self, mesh: Mesh, number: int, program: Program, scene: Scene) -> None:
         material = mesh.material
         values = MESH_UNIFORMS | {
             "base_color": (*material.base_color, material.alpha),
@@ -113,23 +125,29 @@ class Geometry:
             "mesh_number": float(number),
             "single_sided": not material.double_sided,
             "emission": material.emission,
+            "normal_scale": material.normal_scale,
+            "normal_mapped": material.normal_texture is not None,
+            "relief_number": 0 if material.height is None else 1 + scene.height_maps.index(material.height),
         }
         cutoff = material.alpha_cutoff
         if cutoff is not None:
             cutoff /= max(material.alpha, 1e-6)  # the texture's own alpha at which the material cuts
         textures = [self._texture(material.texture, cutoff), self._texture(material.emission_texture, None)]
+        if scene.bends_normals:
+            textures.append(self._texture(material.normal_texture, None, colors=False))
         for name, value in values.items():
             if name in program.uniforms:  # a compiler may find that an edited shader does not need it
                 program.uniforms[name].value = value
         for unit, texture in enumerate(textures):  # after all uploads, which use unit 0
             texture.use(unit)
 
-    def _texture(self, texture: Texture | None, cutoff: float | None) -> moderngl.Texture:
-        """The texture; None is white."""
+    def _texture(self, texture: Texture | None, cutoff: float | None, colors: bool = True) -> moderngl.Texture:
+        """The texture; None is white. Without `colors`, its values are linear numbers."""
         if texture is None:
             self._white = self._white or context.get().texture((1, 1), 4, b"\xff" * 4)
             return self._white
         known = self._textures.setdefault(texture, {})
-        if cutoff not in known:
-            known[cutoff] = upload(texture, cutoff)
-        return known[cutoff]
+        key = cutoff if colors else "numbers"
+        if key not in known:
+            known[key] = upload(texture, cutoff, colors)
+        return known[key]

@@ -314,21 +314,29 @@ def sampled(frame: FrameContext) -> set[str]:
     names = {
         step.reads.get(name, name) for step in frame.module.all_passes() for name in declared(step.shader).samplers
     }
-    return names | declared(frame.occluders.glsl()).samplers
+    if _asks_for_occluders(frame):
+        for text in frame.occluders.bindings().includes.values():
+            names |= declared(text).samplers
+    return names
 
 
 def surface_formats(frame: FrameContext) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
-    names = sampled(frame)
+    names = sampled(frame) | ({"geometricNormal"} if frame.scene.bends_normals else set())
     return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
 
 
 def occluders(frame: FrameContext, large: Buffers) -> Occluders:
     """The occluders of the module's choice; nothing is drawn where no pass of the module includes "occluders.glsl"."""
-    declared = frame.runner.programs.declared
-    if not any("occluders.glsl" in declared(step.shader).includes for step in frame.module.all_passes()):
+    if not _asks_for_occluders(frame):
         return Occluders(frame.occluders.bindings())
     return frame.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
+
+
+def _asks_for_occluders(frame: FrameContext) -> bool:
+    """Whether some pass of the module includes "occluders.glsl"."""
+    declared = frame.runner.programs.declared
+    return any("occluders.glsl" in declared(step.shader).includes for step in frame.module.all_passes())
 
 
 def _as_scene(scene: Any) -> Scene:

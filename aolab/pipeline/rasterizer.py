@@ -89,6 +89,12 @@ class Rasterizer:
         seen_from = view if step.seen_from is None else step.seen_from(self.scene, view)
         return self.triangles(step, [seen_from], bindings)
 
+    def reliefs(self) -> Bindings:
+        """The scene's height maps, for shaders with lib/relief.glsl."""
+        made = self.geometry.reliefs.of(self.scene)
+        textures = {"relief_atlas": made.atlas}
+        return Bindings("the reliefs", textures, made.uniforms, {"reliefs": len(made.regions)})
+
     def run(self, step: Pass, bindings: Iterable[Bindings], size: Size) -> Buffers:
         """The outputs of a full-screen pass."""
         return self.runner.run(step, bindings, size)
@@ -108,7 +114,13 @@ class Rasterizer:
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
         mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
-        own = [*bindings, mesh, self.last, Bindings(f"the pass '{step.name}'", constants=step.constants)]
+        own = [
+            *bindings,
+            mesh,
+            self.reliefs(),
+            self.last,
+            Bindings(f"the pass '{step.name}'", constants=step.constants),
+        ]
         views = [Bindings("the view", uniforms=one.uniforms, constants=one.constants) for one in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]
         program = runner.program(step, given[0], step.vertex, step.geometry)

@@ -1,10 +1,11 @@
 """The G-buffer: the surfaces that the camera sees, before any light; and its smaller copy."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ..gl.bindings import Bindings
 from ..modules.buffers import BACKGROUND_Z, ON_DEMAND, SURFACES
-from ..modules.filters.base import over_sources
+from ..modules.filters.base import MOST_SOURCES, over_sources
 from ..modules.passes import GeometryPass, Pass
 from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
@@ -37,25 +38,35 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
             "surfaceViewZ": "viewZ",
             "surfaceNormal": "viewNormal",
             "surfaceAlbedo": "albedo",
-            **{f"surface{name.capitalize()}": name for name in ON_DEMAND},
+            **{f"surface{name[0].upper()}{name[1:]}": name for name in ON_DEMAND},
         },
         outside={} if atlas else _OUTSIDE,
         clear=_OUTSIDE,
     )
 
 
+def facing(surfaces: Buffers, normals: str) -> Buffers:
+    """The surfaces with the vertices' own normals as `viewNormal`, where `normals` is geometric and they differ."""
+    if normals == "geometric" and "geometricNormal" in surfaces:
+        return {**surfaces, "viewNormal": surfaces["geometricNormal"]}
+    return surfaces
+
+
 def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buffers:
     """The surface buffers at the size of `small`, from those at the size of `view`."""
+    plane = "geometricNormal" if "geometricNormal" in buffers else "viewNormal"
     rays = {"small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
     bindings = [
         Bindings("the surfaces", buffers),
         Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the small view", uniforms=rays),
     ]
-    result = runner.run(_SHRINK, bindings, small.size)
+    result = runner.run(replace(_SHRINK, reads={"planeNormal": plane}), bindings, small.size)
     others = {name: ON_DEMAND[name].format for name in buffers if name in ON_DEMAND}
-    if others:
-        step = over_sources("shrink", "pipeline/shrink_sources.frag", others)
-        sources = {f"source{number}": buffers[name] for number, name in enumerate(others)}
+    names = list(others)
+    for start in range(0, len(names), MOST_SOURCES):
+        some = {name: others[name] for name in names[start : start + MOST_SOURCES]}
+        step = over_sources("shrink", "pipeline/shrink_sources.frag", some)
+        sources = {f"source{number}": buffers[name] for number, name in enumerate(some)}
         result |= runner.run(step, [*bindings[1:], Bindings("the sources", sources)], small.size)
     return result

@@ -13,10 +13,13 @@ from ..pictures.images import linear_from_srgb
 from ..scene.mesh import Texture
 
 GL_SRGB8_ALPHA8 = 0x8C43
+GL_RGBA8 = 0x8058
 
 
-def upload(texture: Texture, cutoff: float | None) -> moderngl.Texture:
-    """The texture, 8 bits sRGB; `cutoff` is the alpha below which it has holes, None where it has none.
+def upload(texture: Texture, cutoff: float | None, colors: bool = True) -> moderngl.Texture:
+    """The texture, 8 bits sRGB, or linear numbers without `colors`.
+
+    `cutoff` is the alpha below which the texture has holes, None where it has none.
 
     A picture that is larger than the driver allows is drawn smaller, with a `Notice`. Raises `GpuMemoryError`.
     """
@@ -35,7 +38,9 @@ def upload(texture: Texture, cutoff: float | None) -> moderngl.Texture:
         pixels = np.asarray(Image.fromarray(pixels).resize(size, Image.Resampling.BOX))
         height, width = pixels.shape[:2]
     flipped = np.ascontiguousarray(pixels[::-1])  # GL's first row is the bottom one
-    uploaded = gl.texture((width, height), 4, flipped.tobytes(), internal_format=GL_SRGB8_ALPHA8)
+    uploaded = gl.texture(
+        (width, height), 4, flipped.tobytes(), internal_format=GL_SRGB8_ALPHA8 if colors else GL_RGBA8
+    )
     refuse_exhaustion(f"texture '{texture.name}' of {width}x{height}")
     near = moderngl.NEAREST if texture.nearest else moderngl.LINEAR
     if texture.mipmaps:

@@ -10,6 +10,7 @@ import numpy as np
 from ..errors import Notice, SceneError
 from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
+from ..maths.tangents import mikktspace
 
 Wrap = Literal["repeat", "mirror", "clamp"]
 CHUNK = 256  # triangles, whose distance to a point is taken together
@@ -40,13 +41,39 @@ class Texture:
 
 
 @dataclass(frozen=True, eq=False)
+class HeightMap:
+    """A relief: `heights` (H, W) float32 over the surface, along its normal, in units of the mesh; top row first.
+
+    `wrap`: how the map goes on outside [0, 1], in u and in v. Raises `SceneError` for another shape, heights that are
+    not finite, or another wrap.
+    """
+
+    heights: np.ndarray
+    name: str = ""
+    wrap: tuple[Wrap, Wrap] = ("repeat", "repeat")
+
+    def __post_init__(self) -> None:
+        heights = np.array(self.heights, np.float32)
+        if heights.ndim != 2 or not heights.size:
+            raise SceneError(f"height map '{self.name}': heights have shape {heights.shape}, not (H, W)")
+        if not np.isfinite(heights).all():
+            raise SceneError(f"height map '{self.name}': some of its heights are not finite")
+        if len(self.wrap) != 2 or not {*self.wrap} <= {*get_args(Wrap)}:
+            raise SceneError(f"height map '{self.name}': wrap = {self.wrap} is not two of {', '.join(get_args(Wrap))}")
+        heights.flags.writeable = False
+        object.__setattr__(self, "heights", heights)
+
+
+@dataclass(frozen=True, eq=False)
 class Material:
     """A diffuse surface: albedo = `base_color` (linear RGB, [0, 1]) × texture × vertex colour.
 
     `alpha` in [0, 1] multiplies the texture's and the vertices' alpha. `alpha_cutoff`: points whose alpha is below are
     not drawn; None draws all. `blend`: alpha is the share of the pixels, and of the rays, that meet the surface.
     `double_sided`: False leaves out triangles seen from behind, where their corners run clockwise. `emission` is
-    radiance (linear RGB, from 0) that the surface sends besides, times `emission_texture`.
+    radiance (linear RGB, from 0) that the surface sends besides, times `emission_texture`. `normal_texture` holds
+    normals in tangent space, 2 × value - 1, by the MikkTSpace convention; `normal_scale` multiplies their x and y.
+    `height` is a relief: the occluder kind `height` tests against it. Without a normal texture it bends the normals.
     Raises `SceneError` for a value out of range.
     """
 
@@ -59,6 +86,9 @@ class Material:
     double_sided: bool = True
     emission: tuple[float, float, float] = (0.0, 0.0, 0.0)
     emission_texture: Texture | None = None
+    normal_texture: Texture | None = None
+    normal_scale: float = 1.0
+    height: HeightMap | None = None
 
     def __post_init__(self) -> None:
         what = f"material '{self.name}'"
@@ -70,6 +100,15 @@ class Material:
             raise SceneError(f"{what}: emission = {self.emission} is not three finite numbers from 0")
         if not 0 <= self.alpha <= 1:
             raise SceneError(f"{what}: alpha = {self.alpha} is outside [0, 1]")
+        if not np.isfinite(self.normal_scale):
+            raise SceneError(f"{what}: normal_scale = {self.normal_scale} is not a finite number")
+        if self.height is not None and not isinstance(self.height, HeightMap):
+            raise SceneError(f"{what}: height = {self.height!r:.80} is not a HeightMap")
+
+    @property
+    def bends_normals(self) -> bool:
+        """Whether a texture changes the normals of the vertices."""
+        return self.normal_texture is not None or self.height is not None
 
 
 def _array(value: object, columns: tuple[int, ...], dtype: type, what: str) -> np.ndarray:
@@ -88,6 +127,8 @@ class Mesh:
     `vertices` (V, 3) float32; `faces` (F, 3) uint32; `normals` (V, 3), made from the faces when None, smooth up to
     `crease` degrees (which splits vertices along the creases); `uv` (V, 2), v up; `colors` (V, 4) linear RGBA float32.
     Degenerate triangles are dropped, and normals that cannot shade are made anew: each is counted in a `Notice`.
+    `tangents` (V, 4): xyz the direction in which u grows, w the sign of the bitangent w · n × t; made by the MikkTSpace
+    convention when None and the material has a normal texture.
     A `Notice` warns of vertices so far from the origin that float32 moves them.
     Raises `SceneError` for an empty mesh, non-finite numbers (mesh and index named), indices out of range.
     """
@@ -100,6 +141,7 @@ class Mesh:
     material: Material = field(default_factory=Material)
     name: str = "mesh"
     crease: float = CREASE_DEGREES
+    tangents: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         what = f"mesh '{self.name}'"
@@ -118,8 +160,8 @@ class Mesh:
                 f"but there are {len(vertices)} vertices"
             )
         faces = self._drop_degenerate(vertices, faces.astype(np.uint32), what)
-        attributes: dict[str, np.ndarray | None] = {"normals": None, "uv": None, "colors": None}
-        for key, columns in {"normals": (3,), "uv": (2,), "colors": (4,)}.items():
+        attributes: dict[str, np.ndarray | None] = dict.fromkeys(("normals", "uv", "colors", "tangents"))
+        for key, columns in {"normals": (3,), "uv": (2,), "colors": (4,), "tangents": (4,)}.items():
             value = getattr(self, key)
             if value is None:
                 continue
@@ -131,11 +173,20 @@ class Mesh:
         if (material.texture is not None or material.emission_texture is not None) and attributes["uv"] is None:
             warnings.warn(f"{what}: a texture but no uv; drawn in its base colour", Notice, stacklevel=3)
             object.__setattr__(self, "material", replace(material, texture=None, emission_texture=None))
+        if self.material.bends_normals and attributes["uv"] is None:
+            warnings.warn(f"{what}: a normal map or a height map but no uv; drawn without", Notice, stacklevel=3)
+            object.__setattr__(self, "material", replace(self.material, normal_texture=None, height=None))
         vertices, faces, source, attributes["normals"] = self._with_normals(
             vertices, faces, attributes["normals"], what
         )
         if source is not None:
-            for key in ("uv", "colors"):
+            for key in ("uv", "colors", "tangents"):
+                array = attributes[key]
+                attributes[key] = None if array is None else array[source]
+        uv, tangents = attributes["uv"], attributes["tangents"]
+        if tangents is None and self.material.normal_texture is not None and uv is not None:
+            vertices, faces, source, attributes["tangents"] = mikktspace(vertices, faces, attributes["normals"], uv)
+            for key in ("normals", "uv", "colors"):
                 array = attributes[key]
                 attributes[key] = None if array is None else array[source]
         for key, array in {"vertices": vertices, "faces": faces, **attributes}.items():

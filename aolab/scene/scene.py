@@ -12,7 +12,7 @@ from ..maths.local_maxima import AXES, mean_nearest_distance
 from .camera import Camera
 from .environment import Environment
 from .lights import DirectionalLight, Light
-from .mesh import Mesh
+from .mesh import HeightMap, Mesh
 from .view import shader_origin
 
 SAMPLED = 1000  # vertices of an instance that decide what is framed
@@ -175,6 +175,17 @@ class Scene:
     def emits(self) -> bool:
         """Whether a surface sends light by itself."""
         return any(any(instance.mesh.material.emission) for instance in self.instances)
+
+    @cached_property
+    def height_maps(self) -> tuple[HeightMap, ...]:
+        """The height maps of all materials, each once."""
+        maps = (instance.mesh.material.height for instance in self.instances)
+        return tuple(dict.fromkeys(one for one in maps if one is not None))
+
+    @property
+    def bends_normals(self) -> bool:
+        """Whether a normal map or a height map changes the normals of some mesh."""
+        return any(instance.mesh.material.bends_normals for instance in self.instances)
 
     @cached_property
     def feature_distance(self) -> float | None:

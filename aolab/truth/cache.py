@@ -112,14 +112,18 @@ def _scene_parts(scene: Scene) -> Iterator[Any]:
     meshes = {instance.mesh: None for instance in scene.instances}
     numbers = {mesh: i for i, mesh in enumerate(meshes)}
     for mesh in meshes:
-        for name in ("vertices", "faces", "normals", "uv", "colors"):
+        for name in ("vertices", "faces", "normals", "uv", "colors", "tangents"):
             array = getattr(mesh, name)
             yield f"{name} {None if array is None else array.shape}".encode()
             if array is not None:
                 yield array
         material = mesh.material
-        yield repr(replace(material, texture=None, emission_texture=None)).encode()
-        for texture in (material.texture, material.emission_texture):
+        plain = replace(material, texture=None, emission_texture=None, normal_texture=None, height=None)
+        yield repr(plain).encode()
+        if material.height is not None:
+            yield repr((material.height.heights.shape, material.height.wrap)).encode()
+            yield material.height.heights
+        for texture in (material.texture, material.emission_texture, material.normal_texture):
             if texture is not None:
                 yield repr((texture.pixels.shape, texture.wrap, texture.nearest)).encode()
                 yield texture.pixels

@@ -47,14 +47,17 @@ class Surface:
     fraction of a pixel), rays close to the pixel's centre look for the G-buffer's surface; if none finds it, the point
     starts a pixel's width off the G-buffer's position, along its normal.
 
-    The normal is the G-buffer's. Where that faces away from the triangle that the ray meets, it is the triangle's: at a
-    silhouette the rasteriser may draw the far side of a solid, whose normal, turned to the viewer, points inside.
+    The normal is the G-buffer's; if `normals` is geometric, the one that no map bends. Where that faces away from the
+    triangle that the ray meets, it is the triangle's: at a silhouette the rasteriser may draw the far side of a solid,
+    whose normal, turned to the viewer, points inside.
     """
 
-    def __init__(self, frame: Frame, scene: Scene, view: View, world: World) -> None:
+    def __init__(self, frame: Frame, scene: Scene, view: View, world: World, normals: str = "shading") -> None:
         self.pixel = np.flatnonzero(frame.mask)
         self.view = view
-        self._view_z, self._normal, self._albedo = frame["viewZ"], frame["viewNormal"], frame["albedo"]
+        own = normals == "geometric" and "geometricNormal" in frame.buffers
+        self._view_z, self._albedo = frame["viewZ"], frame["albedo"]
+        self._normal = frame["geometricNormal" if own else "viewNormal"]
         self._world = world
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre

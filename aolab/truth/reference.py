@@ -103,7 +103,7 @@ def reference(
         world = World(scene, engine)  # type: ignore[arg-type]  # not mitsuba
         setting = Setting(world, Sky(scene.environment), scene.lights, asked, rays)
         needed = {"radiance" if base_of(name) == "image" else base_of(name) for name in missing} - {"rays"}
-        surface = Surface(shot.surfaces, scene, shot.view, world)
+        surface = Surface(shot.surfaces, scene, shot.view, world, asked.normals)
         traced = trace(setting, surface, [name for name in BUFFERS if name in needed], seed, error, progress)
         return {name: values for name, values in _pictures(traced, surface, shot).items() if name in missing}
 

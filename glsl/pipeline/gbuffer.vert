@@ -1,11 +1,15 @@
 // The camera's view of an instance.
-// Inputs: local-space vertices, world_from_local a instance. Outputs: view-space position and normal, uv, colour.
+// Inputs: local-space vertices, world_from_local a instance.
+// Outputs: view-space position, normal and tangent, uv, colour.
 
 in vec3 local_position;
 in vec3 local_normal;
 in vec2 texture_uv;
 in vec4 vertex_color;
+in vec4 local_tangent;
 in mat4 world_from_local;
+
+const bool bent_normals;
 
 uniform mat4 view_from_world;
 uniform mat4 clip_from_view;
@@ -14,6 +18,8 @@ out vec3 viewPos;
 out vec3 viewNormal;
 out vec2 uv;
 out vec4 color;
+out vec4 tangent;          // view space, w the bitangent's sign; 0 without a map of normals
+flat out float localScale; // of the instance, so that heights grow with it
 flat out float winding;
 
 void main() {
@@ -27,5 +33,12 @@ void main() {
     uv = texture_uv;
     color = vertex_color;
     winding = sign(determinant(linear));
+    tangent = vec4(0.0);
+    localScale = 1.0;
+    if (bent_normals) {
+        tangent = vec4(mat3(view_from_world) * (linear * local_tangent.xyz), local_tangent.w * winding);
+        if (dot(tangent.xyz, tangent.xyz) > 0.0) tangent.xyz = normalize(tangent.xyz);
+        localScale = pow(abs(determinant(linear)), 1.0 / 3.0);
+    }
     gl_Position = clip_from_view * position;
 }

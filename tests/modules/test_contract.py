@@ -1,6 +1,7 @@
 """Properties of every module; a new module needs no edit here."""
 
 import typing
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,19 @@ import pytest
 import small_scenes
 from module_settings import alternatives, contexts, kinds
 
-from aolab import DirectionalLight, Environment, Frame, Module, ParameterError, Pass, PointLight, Scene, paths
+from aolab import (
+    DirectionalLight,
+    Environment,
+    Frame,
+    HeightMap,
+    Material,
+    Module,
+    ParameterError,
+    Pass,
+    PointLight,
+    Scene,
+    paths,
+)
 from aolab.gl.texture import FORMATS
 from aolab.modules import MODULES, known_buffers
 from aolab.modules.filters import FILTERS
@@ -20,12 +33,16 @@ CHECKOUT = Path(__file__).parents[2]
 pytestmark = [
     pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice"),  # nor is a floor
     pytest.mark.filterwarnings("ignore:.* no reflective shadow map:aolab.errors.Notice"),
+    pytest.mark.filterwarnings("ignore:.* has no height map:aolab.errors.Notice"),
 ]
 PARAMETERS = [(name, field) for name, module in MODULES.items() for field in module.model_fields]
 CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()]
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: its shader includes no occluders, and there is nothing to filter
-WITHOUT_EFFECT = {("none", "occluders"), ("none", "filter"), ("rsm", "occluders"), ("rsm", "shaded")}
+WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals")} | {
+    ("rsm", "occluders"),
+    ("rsm", "shaded"),
+}
 
 
 def differ(one: Frame, other: Frame) -> bool:
@@ -75,9 +92,12 @@ def test_it_renders_at_the_ends_of_its_ranges(lab, boxes, name):
 
 @pytest.fixture(scope="module")
 def probe(wall) -> Scene:
-    """Near and far things, thin ones, hidden ones, lights, and a sky that is not the same everywhere."""
+    """Near and far things, thin ones, hidden ones, a relief, lights, and a sky that is not the same everywhere."""
+    bumps = HeightMap(0.1 * np.random.default_rng(1).random((64, 64)))
+    floor = replace(wall.instances[0].mesh, material=Material(height=bumps))
     return small_scenes.of(
-        *(instance.mesh for instance in wall.instances),
+        floor,
+        *(instance.mesh for instance in wall.instances[1:]),
         small_scenes.box((1.0, 0.0, -0.4), (1.3, 0.8, 0.1)),
         small_scenes.box((0.4, 0.0, -0.3), (0.6, 0.5, 0.2)),
         small_scenes.box((1.6, 1.0, 0.2), (1.9, 1.1, 0.9)),

@@ -49,6 +49,26 @@ EDITS = {
     "half the occlusion": (("s3ho.transfer.glsl", "- blocked)", "- 0.5 * blocked)"),),
     "a quarter of the samples": (("s3ho.moments.frag", ADD, f"if (i % 4 == 0) for (int k = 0; k < 4; ++k) {ADD}"),),
     "no lobes": (("s3ho.direct.frag", LOBE, "max(dot(normal, viewToLight), 0.0)"),),
+    # ambient transfer
+    "half the distances": (("ambient_transfer.frag", "/ float(steps));", "/ float(2 * steps));"),),
+    "linear in place of the square root": (("measures/sqrt.glsl", "return share * share;", "return share;"),),
+    "a short exponential": (("measures/exponential.glsl", "/ sigma; }", "/ (3.0 * sigma); }"),),
+    "one set for all pixels": (
+        ("lib/sampling.glsl", "return 4 * (2 * (low.x ^ low.y) + low.y) + ", "return 0; low.x += "),
+    ),
+    "no neighbours in the filter": (("pipeline/box4.frag", "LEAST_ALIKE = 0.7", "LEAST_ALIKE = 2.0"),),
+    "no limit to depth": (("ambient_transfer.frag", "silhouette_elimination ?", "silhouette_elimination && false ?"),),
+    "black senders": (
+        ("ambient_transfer.frag", "blocked ? occluderRadiance(first)", "blocked ? 0.0 * occluderRadiance(first)"),
+    ),
+    "white senders": (
+        (
+            "ambient_transfer.frag",
+            "blocked ? occluderRadiance(first)",
+            "blocked ? vec3(1.0) + 0.0 * occluderRadiance(first)",
+        ),
+    ),
+    "no relief": (("occluders/height.glsl", "< obstacle;", "< -1e9 * (1.0 + abs(obstacle));"),),
     # SSBN
     "cones around the normal": (("ssbn.ambient.frag", "> 1e-12 ? bent", "> 1e-12 ? worldNormal"),),
     # HAO
@@ -89,6 +109,11 @@ SMALL = {
     ("hao", "fig7"): {"size": (160, 120), "rays": 32, "repeats": 1},
     ("hao", "fig8"): {"rays": 32},
     ("hao", "fig9"): {"rays": 64},
+    ("ambient_transfer", "fig1"): {"size": (96, 54), "accumulate": 4},
+    ("ambient_transfer", "fig5"): {"size": (128, 72), "seeds": 4},
+    ("ambient_transfer", "fig7"): {"size": (160, 90), "rays": 64},
+    ("ambient_transfer", "fig8"): {"size": (128, 72), "rays": 64},
+    ("ambient_transfer", "fig9"): {"size": (240, 135), "rays": 64},
     ("s3ho", "fig1"): {"size": (240, 135), "rays": 64},
     ("s3ho", "fig6"): {"size": (96, 54), "rays": 64},
     ("s3ho", "fig7"): {"rays": 512, "seeds": 3},

@@ -32,6 +32,7 @@ def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
     found: dict[str, set[str]] = {}
     for settings in (
         {"occluders": "layers"},
+        {"occluders": "height"},
         {"occluders": "views", "view_layers": 2},
         {"filter": "bilateral", "scale": 0.5},
         {"occluders": "voxels", "filter": "wendland"},

@@ -35,6 +35,10 @@ class Drawing(Protocol):
         """Up to `count` further depth layers behind `nearest` (viewZ), as `surfaces`; fewer where nothing is left."""
         ...
 
+    def reliefs(self) -> Bindings:
+        """The scene's height maps, for shaders with lib/relief.glsl."""
+        ...
+
     def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Textures:
         """The outputs of a pass over the scene's triangles; `view` is the camera's."""
         ...
