@@ -33,8 +33,7 @@ class HAO(Module):
     scale: float = parameter(0.5, "Resolution of the estimate as a share of the image's.", ge=0.125, le=1)
 
     def question(self) -> Question:
-        values = self.model_dump()
-        return Question(values["radius"], "wendland", spread=values["spread"])
+        return super().question().replace(falloff="wendland", spread=self.spread)
 
     def passes(self) -> list[Pass]:
         return [Pass("hao", self.shader, self.outputs, {"lifted": self.occluders != "voxels"})]

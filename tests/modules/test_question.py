@@ -37,7 +37,8 @@ def test_every_module_has_a_question_once_it_is_resolved(name, boxes):
     question = module.question()
     assert question.limited_senders
     assert question.radius == getattr(module, "radius", None)
-    assert question.falloff == getattr(module, "measure", getattr(module, "falloff", 0.0))
+    own = {"hao": "wendland"}.get(name, 0.0)  # of modules without such a parameter
+    assert question.falloff == getattr(module, "measure", getattr(module, "falloff", own))
 
 
 def test_a_frame_carries_the_question(lab, boxes):

@@ -8,6 +8,7 @@ import pytest
 from PIL import Image
 
 from aolab.modules import MODULES
+from aolab.modules.filters import FILTERS
 
 SIZE = (64, 36)
 SMALL = ("--size", "64x36", "--rays", "8", "--frames", "3")
@@ -32,7 +33,7 @@ def test_quality_writes_a_picture_and_the_data_beside_it(aolab, tmp_path, monkey
     assert {"renderer", "machine", "radius", "rays", "truth_standard_error"} <= set(data)
     assert (data["scene"], data["size"], data["frames"]) == ("boxes", list(SIZE), 3)
     assert {point["module"] for point in data["points"]} == {"none", "ssao"}
-    assert len(data["points"]) == 1 + 2 * 3  # two numbers of directions with three filters; `none` has no choice
+    assert len(data["points"]) == 1 + 2 * len(FILTERS)  # two numbers of directions with each filter; and `none`
     for text in (data["renderer"], data["machine"], "ssao 8×4 box4, default"):
         assert text in done.out
 

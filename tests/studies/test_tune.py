@@ -10,6 +10,7 @@ import small_scenes
 
 import aolab
 from aolab.errors import Notice, ParameterError
+from aolab.modules.filters import FILTERS
 from aolab.studies.nearby_cameras import cameras, turned
 from aolab.studies.search_space import Axis, axis, tunable
 from aolab.studies.tune import Tuning, tune
@@ -101,7 +102,7 @@ def test_ranges_come_from_the_parameters_statements():
     assert not {"bounces", "senders", "directions"} & set(tunable(aolab.SSDO()))
     assert axis(aolab.SSAO(), "thickness") == Axis("thickness", 0.9, 0.9 / 30, 10, log=True)
     assert axis(aolab.SSAO(bias=0.0), "bias") == Axis("bias", 0.0, 0, 1)
-    assert axis(aolab.SSAO(), "filter").choices == ("none", "box4", "bilateral")
+    assert axis(aolab.SSAO(), "filter").choices == tuple(FILTERS)
 
     class Own(aolab.Module):
         lobes: int = aolab.parameter(4, "A whole number.", ge=1, le=8)
