@@ -32,7 +32,7 @@ void main() {
     float open = 0.0;
     for (int i = 0; i < directions; ++i) {
         float share = interleavedOffset(kernel[i].w, receiver.set);
-        vec3 way = receiver.frame * kernel[i].xyz * (radius * measureInverse(share));
+        vec3 way = wayAlong(receiver, receiver.frame * kernel[i].xyz * (radius * measureInverse(share)));
         bool blocked = false;
         Occluder first;
         for (int j = 1; j <= steps; ++j) {

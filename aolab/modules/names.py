@@ -23,7 +23,8 @@ OWNERS: dict[str, tuple[str, ...]] = {
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel", "rsm_kernel"),
     "the mesh": (
-        "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission", "one_sided", "cut_outs",
+        "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission",
+        "is_smooth", "one_sided", "cut_outs",
     ),
     "the last frame": ("has_last", "last_from_view", "last_pixel_from_ray"),
 }  # fmt: skip

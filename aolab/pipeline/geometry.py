@@ -22,6 +22,7 @@ MESH_UNIFORMS: dict[str, object] = {
     "mesh_number": 0.0,
     "single_sided": False,
     "emission": (0.0, 0.0, 0.0),
+    "is_smooth": False,
 }
 MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1}  # of each mesh in turn, by their units
 
@@ -113,6 +114,7 @@ class Geometry:
             "mesh_number": float(number),
             "single_sided": not material.double_sided,
             "emission": material.emission,
+            "is_smooth": mesh.is_smooth,
         }
         cutoff = material.alpha_cutoff
         if cutoff is not None:

@@ -37,11 +37,18 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
             "surfaceViewZ": "viewZ",
             "surfaceNormal": "viewNormal",
             "surfaceAlbedo": "albedo",
-            **{f"surface{name.capitalize()}": name for name in ON_DEMAND},
+            **{f"surface{name[0].upper()}{name[1:]}": name for name in ON_DEMAND},
         },
         outside={} if atlas else _OUTSIDE,
         clear=_OUTSIDE,
     )
+
+
+def with_facets(buffers: Buffers) -> Buffers:
+    """The surface buffers, with the normals of their triangles: the surfaces' own where the scene has no others."""
+    if "viewNormal" in buffers:
+        buffers.setdefault("facetNormal", buffers["viewNormal"])
+    return buffers
 
 
 def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buffers:
@@ -53,9 +60,10 @@ def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buf
         Bindings("the small view", uniforms=rays),
     ]
     result = runner.run(_SHRINK, bindings, small.size)
-    others = {name: ON_DEMAND[name].format for name in buffers if name in ON_DEMAND}
+    drawn = [name for name in buffers if buffers[name] is not buffers["viewNormal"]]
+    others = {name: ON_DEMAND[name].format for name in drawn if name in ON_DEMAND}
     if others:
         step = over_sources("shrink", "pipeline/shrink_sources.frag", others)
         sources = {f"source{number}": buffers[name] for number, name in enumerate(others)}
         result |= runner.run(step, [*bindings[1:], Bindings("the sources", sources)], small.size)
-    return result
+    return with_facets(result)

@@ -16,7 +16,7 @@ from ..scene.view import Size, View
 from ..version import __version__
 from . import cache as disk
 
-SURFACES = ("viewZ", "viewNormal", "albedo", "emission")
+SURFACES = ("viewZ", "viewNormal", "facetNormal", "albedo", "emission")
 
 
 @dataclass(frozen=True)

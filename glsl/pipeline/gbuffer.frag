@@ -5,10 +5,12 @@
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
+//            surfaceFacetNormal  unit view-space normal of the triangle, on the side of surfaceNormal (RGBA16F, w 0)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 
 #include "lib/space.glsl"
 
+const bool with_facetNormal;
 const bool with_uv;
 const bool with_tangent;
 const bool with_emission;
@@ -21,6 +23,7 @@ const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's 
 uniform sampler2D nearerZ;
 uniform sampler2D emission_texture;
 uniform vec3 emission;  // of each mesh, times its texture
+uniform bool is_smooth;  // of each mesh: its normals are not those of its triangles
 uniform vec4 pixel_from_ray;
 uniform mat4 last_from_view;        // the last camera's view space from this one's
 uniform vec4 last_pixel_from_ray;
@@ -34,6 +37,7 @@ flat in float winding;
 out float surfaceViewZ;
 out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
+out vec4 surfaceFacetNormal;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
 out vec4 surfaceEmission;
@@ -61,6 +65,11 @@ void main() {
     surfaceViewZ = viewPos.z;
     surfaceNormal = vec4(normalize(!peel && dot(viewNormal, faceNormal) < 0.0 ? -viewNormal : viewNormal), 0.0);
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+    if (with_facetNormal) {
+        // derivatives over a pixel are rounded, in a large triangle: those of a flat mesh are not needed
+        vec3 facet = is_smooth ? normalize(faceNormal) : surfaceNormal.xyz;
+        surfaceFacetNormal = vec4(faceforward(facet, -surfaceNormal.xyz, facet), 0.0);
+    }
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
     if (with_emission) surfaceEmission = vec4(emission * texture(emission_texture, uv).rgb, 1.0);
