@@ -33,7 +33,7 @@ void main() {
 #pragma unroll
     for (int i = 0; i < directions; ++i) {
         float share = interleavedOffset(kernel[i].w, receiver.set);
-        vec3 way = receiver.frame * kernel[i].xyz * (radius * measureInverse(share));
+        vec3 way = wayAlong(receiver, receiver.frame * kernel[i].xyz * (radius * measureInverse(share)));
         bool blocked = false;
         Occluder first;
         for (int j = 1; j <= steps; ++j) {

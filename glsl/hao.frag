@@ -5,7 +5,7 @@
 // Differences: Eq. 4 prints 1/n, with which an open hemisphere's weights would sum to 1/2; the sum of cosines is exact for a
 // closed cap. The small tiling noise texture is an integer hash of the place in the world and the normal.
 //
-// Inputs:  viewZ, viewNormal; kernel[i]: a unit direction around +z, and the offset of its first point in steps.
+// Inputs:  viewZ, viewNormal, facetNormal; kernel[i]: a unit direction around +z, and the offset of its first point in steps.
 // Output:  visibility, in [0, 1].
 
 #include "lib/space.glsl"
@@ -23,6 +23,7 @@ uniform float radius;            // d_max, scene units
 uniform float spread;            // half-angle of the cone, in right angles
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
+uniform sampler2D facetNormal;   // of the triangle, unit, view space
 
 out float visibility;
 
@@ -54,7 +55,8 @@ void main() {
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     float lift = lifted || isEdgeOn(normal, viewPos) ? liftOff(0.0, radius, viewPos, ray_from_pixel) : 0.0;
-    Receiver receiver = receiverAt(pixel, viewPos + normal * lift, normal, texel_size);
+    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    Receiver receiver = receiverAt(pixel, viewPos + facet * lift, normal, facet, texel_size);
 
     vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;
     vec3 worldNormal = mat3(world_from_view) * normal;
@@ -66,7 +68,7 @@ void main() {
     float occlusion = 0.0, cosines = 0.0;
     for (int i = 0; i < directions; ++i) {
         vec3 direction = jittered(kernel[i].xyz, noise.z);
-        vec3 way = frame * direction * radius;
+        vec3 way = wayAlong(receiver, frame * direction * radius);
         float nearest = 1.0;  // a share of the radius, where the kernel is 0
         for (int j = 0; j < steps; ++j) {
             float along = (float(j) + fract(kernel[i].w + noise.y)) / float(steps);

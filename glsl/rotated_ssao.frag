@@ -20,6 +20,7 @@ uniform float thickness;  // radii
 uniform float strength;
 uniform vec4 kernel[line_samples];  // xy, the sample's place on the line, in radii; z, its share of the disc
 uniform vec4 ray_from_pixel;
+uniform sampler2D facetNormal;  // of the triangle, unit, view space
 
 out float visibility;
 
@@ -39,9 +40,9 @@ void main() {
     visibility = 1.0;
     if (isBackground(centreZ)) return;
 
-    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, facet = texelFetch(facetNormal, pixel, 0).xyz;
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    Receiver receiver = receiverAt(pixel, surfacePos + normal * (bias * radius), normal, texel_size);
+    Receiver receiver = receiverAt(pixel, surfacePos + facet * (bias * radius), normal, facet, texel_size);
     float angleRad = 2.0 * PI * float(receiver.set) / 16.0;
     mat2 turn = mat2(cos(angleRad), sin(angleRad), -sin(angleRad), cos(angleRad));
     // pixels a radius, at the receiver's depth
@@ -50,7 +51,7 @@ void main() {
     for (int i = 0; i < line_samples; ++i) {
         // a pixel's centre, whose depth is exact: a plane does not block itself
         vec2 at = floor(gl_FragCoord.xy + reachPx * (turn * kernel[i].xy)) + 0.5;
-        vec3 samplePos = onPlane(at, receiver.viewPos, normal, centreZ - radius);
+        vec3 samplePos = onPlane(at, receiver.viewPos, facet, centreZ - radius);
         Occluder occluder;
         if (!isBlocked(receiver, samplePos, thickness * radius, occluder)) continue;
         vec3 way = occluder.viewPos - receiver.viewPos;

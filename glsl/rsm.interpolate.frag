@@ -1,7 +1,7 @@
 // The bounce at full size from one at low size, where that agrees: Dachsbacher and Stamminger 2005, section 4.
 // Of the four nearest small pixels, those with a similar normal and a point on the same plane count, bilinearly. If fewer
 // than three do, a is 0, and rsm.complete.frag gathers for this pixel.
-// Inputs: viewZ, viewNormal at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
+// Inputs: viewZ, viewNormal, facetNormal at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
 // Outputs: results, the sources at full size; a is whether they were interpolated.
 
 #include "lib/space.glsl"
@@ -12,6 +12,7 @@ uniform sampler2D smallViewZ;
 uniform sampler2D smallNormal;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
+uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
 uniform vec4 small_ray_from_pixel;
 
@@ -28,7 +29,9 @@ void main() {
     ivec2 corner = ivec2(floor(smallPixel)), last = textureSize(smallViewZ, 0) - 1;
     vec2 part = smallPixel - vec2(corner);
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    float planeOffset = alongNormal(dot(normal.xy, ray), normal.z, centreZ);
+    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec2 upward = vec2(facet.z, normal.z);
+    vec2 planeOffset = alongNormals(vec2(dot(facet.xy, ray), dot(normal.xy, ray)), upward, centreZ);
     float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);
     mat4 sum = mat4(0.0);
     float weights = 0.0, agreeing = 0.0;
@@ -37,7 +40,8 @@ void main() {
         ivec2 other = clamp(corner + step, ivec2(0), last);
         vec2 otherRay = viewPosAt(vec2(other) + 0.5, -1.0, small_ray_from_pixel).xy;
         float otherZ = texelFetch(smallViewZ, other, 0).r;
-        float gap = abs(alongNormal(dot(normal.xy, otherRay), normal.z, otherZ) - planeOffset);
+        vec2 otherDotRay = vec2(dot(facet.xy, otherRay), dot(normal.xy, otherRay));
+        float gap = nearerPlane(alongNormals(otherDotRay, upward, otherZ) - planeOffset);
         bool agrees = gap < tolerance && dot(normal, texelFetch(smallNormal, other, 0).xyz) > LEAST_ALIKE;
         if (!agrees) continue;
         vec2 bilinear = mix(1.0 - part, part, vec2(step));

@@ -42,8 +42,9 @@ SURFACES = _table(
 )
 
 # drawn with them if a pass of the module samples them; emission also if a material of the scene has some, and the
-# geometric normal if a normal map or a height map bends others
+# normals of triangles, and those without normal and height maps, where they are not the surfaces'
 ON_DEMAND = _table(
+    Buffer("facetNormal", 3, "RGBA16F", "", 0, "direction", "The unit normal of the surface's triangle, view space."),
     Buffer("uv", 2, "RG32F", "", 0, "numbers", "The texture coordinates of the surface."),
     Buffer("tangent", 3, "RGBA16F", "", 0, "direction", "The direction on the surface in which u grows, view space."),
     Buffer("emission", 3, "RGBA32F", _RADIANCE, 0, "radiance", "The radiance that the material sends by itself."),

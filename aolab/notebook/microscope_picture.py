@@ -61,8 +61,8 @@ def _in_space(axes, samples: Samples) -> None:
 
     start = turned(samples.receiver)
     reach = float(samples.reach.max())
-    for i in range(min(len(samples.directions), MOST)):
-        end = turned(samples.receiver + samples.directions[i] * samples.reach[i])
+    ends = samples.receiver + (samples.points[:, -1] - samples.receiver) / samples.along[:, -1:]
+    for i, end in enumerate(turned(ends[:MOST])):
         color = OPEN if samples.open[i] else BLOCKED
         axes.plot(*np.stack([start, end]).T, color=color, linewidth=0.8, alpha=0.6)
     points, blocked = turned(samples.points[:MOST]), samples.blocked[:MOST]

@@ -30,7 +30,8 @@ class Samples:
     """The points that one pixel tested, for one sample set: N directions of S points each.
 
     `receiver` (3,): the shaded point, lifted off its surface; `surface` (3,): the point on it; `normal` (3,), unit.
-    `directions` (N, 3): unit vectors; `reach` (N,): the length of each march; `offset`: see `along`.
+    `directions` (N, 3): unit vectors; `reach` (N,): the length of each march. A direction that leads under the triangle
+    is marched on its mirror image at the triangle's plane: see `points`.
     `along` (N, S): the distance of each point, as a share of the reach; `points` (N, S, 3): the points.
     `blocked` (N, S) bool; `occluders` (N, S, 3): the surface point that each point was tested against.
     """
@@ -91,7 +92,7 @@ def surfaces(frame: Frame) -> Surfaces:
     if type(kind) not in (Depth, Layers, Views):
         raise ParameterError(f"microscope: the occluders '{kind.name}' are unknown; known: depth, layers, views")
     given = state.occluders.bindings
-    wanted = {name: state.small[name] for name in ("viewZ", "viewNormal")}
+    wanted = {name: state.small[name] for name in ("viewZ", "viewNormal", "facetNormal")}
     wanted |= {name: texture for name, texture in given.textures.items() if name in ("layersZ", "viewsZ")}
     textures = {name: handed(read)(texture) for name, texture in wanted.items()}
     uniforms = {**state.small_view.uniforms, **state.small_view.constants, **given.uniforms}
@@ -114,7 +115,8 @@ def replay(seen: Surfaces, pixel: tuple[int, int], seed: int) -> Samples | None:
     surface = np.append((centre * ray[:2] + ray[2:]) * (F(1) if parallel else -z), z).astype(F)
     radius, values = F(module.model_dump()["radius"]), module
     lift = max(F(values.bias) * radius, (F(1) if parallel else radius - surface[2]) * ray[0])
-    receiver = surface + normal * lift
+    facet = seen.textures["facetNormal"][row, column, :3].astype(F)
+    receiver = surface + facet * lift
 
     sample_set = _interleaved_set(x, y)
     frame = _interleaved_frame(normal, sample_set)
@@ -124,10 +126,12 @@ def replay(seen: Surfaces, pixel: tuple[int, int], seed: int) -> Samples | None:
     offset = offset - np.floor(offset)
     steps = F(values.steps)
     along = ((np.arange(values.steps, dtype=F)[None] + offset[:, None]) / steps).astype(F)
+    reach = np.linalg.norm(ways, axis=1)
+    directions = ways / reach[:, None]
+    ways -= facet * np.minimum(2 * (ways @ facet), 0)[:, None]  # under the triangle: mirrored at its plane
     points = (receiver + ways[:, None] * along[..., None]).astype(F)
     blocked, occluders = _blocked(seen, points, F(values.thickness) * radius)
-    reach = np.linalg.norm(ways, axis=1)
-    return Samples(receiver, surface, normal, ways / reach[:, None], kernel, reach, along, points, blocked, occluders)
+    return Samples(receiver, surface, normal, directions, kernel, reach, along, points, blocked, occluders)
 
 
 def _interleaved_set(x: int, y: int) -> int:

@@ -26,6 +26,7 @@ MESH_UNIFORMS: dict[str, object] = {
     "normal_scale": 1.0,
     "normal_mapped": False,
     "relief_number": 0,
+    "is_smooth": False,
 }
 MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1, "normal_texture": 2}  # of each mesh in turn, by their units
 
@@ -128,6 +129,7 @@ class Geometry:
             "normal_scale": material.normal_scale,
             "normal_mapped": material.normal_texture is not None,
             "relief_number": 0 if material.height is None else 1 + scene.height_maps.index(material.height),
+            "is_smooth": mesh.is_smooth,
         }
         cutoff = material.alpha_cutoff
         if cutoff is not None:

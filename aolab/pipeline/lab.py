@@ -243,8 +243,11 @@ class Lab:
             **asdict(display),
             "triangles": scene.triangles,
         }
+        shown = {**state.large, **state.estimate}
+        if not scene.is_smooth:
+            del shown["facetNormal"]  # it is viewNormal
         result = Frame(
-            {**state.large, **state.estimate},
+            shown,
             runner.timer.result(),
             info,
             derived={f"{name}{raw}": (make, raw) for name, make in module.derived.items() for raw in ("", "_raw")},
@@ -322,7 +325,8 @@ def sampled(frame: FrameContext) -> set[str]:
 
 def surface_formats(frame: FrameContext) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
-    names = sampled(frame) | ({"geometricNormal"} if frame.scene.bends_normals else set())
+    names = sampled(frame) - {"facetNormal"}  # drawn if the scene needs it
+    names |= {"geometricNormal"} if frame.scene.bends_normals else set()
     return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
 
 

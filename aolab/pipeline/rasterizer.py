@@ -14,7 +14,7 @@ from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
 from .geometry import MESH_TEXTURES, MESH_UNIFORMS, Geometry, kinds_of
 from .pass_runner import Buffers, PassRunner
-from .surfaces import G_BUFFER, g_buffer
+from .surfaces import G_BUFFER, g_buffer, with_facets
 
 
 class DepthTargets:
@@ -47,13 +47,16 @@ class Rasterizer:
 
     def surfaces(self, views: Sequence[View], name: str = "g_buffer", formats: Mapping[str, str] = G_BUFFER) -> Buffers:
         """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`."""
-        return self.triangles(g_buffer(name, self._with_emission(formats), atlas=len(views) > 1), views)
+        return with_facets(self.triangles(g_buffer(name, self._needed(formats), atlas=len(views) > 1), views))
 
-    def _with_emission(self, formats: Mapping[str, str]) -> Mapping[str, str]:
-        """The formats, and that of the emission if the scene has some and the surfaces' light is wanted."""
-        if "albedo" in formats and self.scene.emits:
-            return {**formats, "emission": ON_DEMAND["emission"].format}
-        return formats
+    def _needed(self, formats: Mapping[str, str]) -> Mapping[str, str]:
+        """The formats, and those of buffers that this scene needs besides.
+
+        They are the emission, if the surfaces' light is wanted and the scene has some, and the normals of triangles.
+        """
+        wanted = {"emission": "albedo" in formats and self.scene.emits}
+        wanted["facetNormal"] = "viewNormal" in formats and self.scene.is_smooth
+        return {**formats, **{name: ON_DEMAND[name].format for name in wanted if wanted[name]}}
 
     def peeled(
         self,
@@ -77,12 +80,12 @@ class Rasterizer:
         """The G-buffer of what lies behind `nearer` (viewZ), or None where nothing does. Normals are the mesh's own."""
         drawn = context.get().query(samples=True)
         with drawn:
-            step = g_buffer("peel", self._with_emission(formats), peel=True)
+            step = g_buffer("peel", self._needed(formats), peel=True)
             buffers = self.triangles(step, views, [Bindings("the nearer layer", {"nearerZ": nearer})])
         if drawn.samples == 0:
             self.runner.give_back(buffers)
             return None
-        return buffers
+        return with_facets(buffers)
 
     def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Buffers:
         """The outputs of a geometry pass from its viewpoint; `view` is the camera's."""

@@ -1,7 +1,6 @@
 """The G-buffer: the surfaces that the camera sees, before any light; and its smaller copy."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 
 from ..gl.bindings import Bindings
 from ..modules.buffers import BACKGROUND_Z, ON_DEMAND, SURFACES
@@ -52,21 +51,28 @@ def facing(surfaces: Buffers, normals: str) -> Buffers:
     return surfaces
 
 
+def with_facets(buffers: Buffers) -> Buffers:
+    """The surface buffers, with the normals of their triangles: the surfaces' own where the scene has no others."""
+    if "viewNormal" in buffers:
+        buffers.setdefault("facetNormal", buffers["viewNormal"])
+    return buffers
+
+
 def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buffers:
     """The surface buffers at the size of `small`, from those at the size of `view`."""
-    plane = "geometricNormal" if "geometricNormal" in buffers else "viewNormal"
     rays = {"small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
     bindings = [
         Bindings("the surfaces", buffers),
         Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the small view", uniforms=rays),
     ]
-    result = runner.run(replace(_SHRINK, reads={"planeNormal": plane}), bindings, small.size)
-    others = {name: ON_DEMAND[name].format for name in buffers if name in ON_DEMAND}
+    result = runner.run(_SHRINK, bindings, small.size)
+    drawn = [name for name in buffers if buffers[name] is not buffers["viewNormal"]]
+    others = {name: ON_DEMAND[name].format for name in drawn if name in ON_DEMAND}
     names = list(others)
     for start in range(0, len(names), MOST_SOURCES):
         some = {name: others[name] for name in names[start : start + MOST_SOURCES]}
         step = over_sources("shrink", "pipeline/shrink_sources.frag", some)
         sources = {f"source{number}": buffers[name] for number, name in enumerate(some)}
         result |= runner.run(step, [*bindings[1:], Bindings("the sources", sources)], small.size)
-    return result
+    return with_facets(result)

@@ -28,7 +28,7 @@ def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
     near, far = camera.clip_planes(scene.bounds)
     if _distances(camera, scene.bounds).min() > near:
         return camera
-    slant = float(np.sqrt(1 + np.square(camera.half_extent(size)).sum()))  # of the ray through a corner of the picture
+    slant = _slant(camera, size)
     nearest = nearest_surface(scene, np.asarray(camera.eye), near * slant / MARGIN)
     if nearest is None:
         return camera
@@ -38,12 +38,16 @@ def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
 def nearest_surface(scene: Scene, point: np.ndarray, limit: float) -> float | None:
     """The distance from `point` (3,) to the nearest triangle of the scene; None if it is over `limit`."""
     centres, halves, owners = [], [], []
-    for number, instance in enumerate(scene.instances):
+    low, high = scene.instance_bounds.transpose(1, 0, 2)
+    for number in np.flatnonzero(to_boxes(point, (low + high) / 2, (high - low) / 2) < limit).tolist():
+        instance = scene.instances[number]
         boxes = instance.mesh.chunk_bounds  # (c, 2, 3)
         linear = np.abs(instance.world_from_local[:3, :3])
         centres.append(instance.placed(boxes.mean(axis=1)))
         halves.append((boxes[:, 1] - boxes[:, 0]) / 2 @ linear.T)
         owners += [(number, chunk) for chunk in range(len(boxes))]
+    if not owners:
+        return None
     lower = to_boxes(point, np.concatenate(centres), np.concatenate(halves))
     best = limit
     for place in np.argsort(lower):
@@ -59,7 +63,7 @@ def nearest_surface(scene: Scene, point: np.ndarray, limit: float) -> float | No
 def reason_of_nothing(scene: Scene, view: View) -> str:
     """Why no surface of the scene is in the picture, as far as the scene's boxes and materials tell."""
     near, far = view.camera.clip_planes(scene.bounds)
-    corners = [_corners(instance.bounds) for instance in scene.instances]
+    corners = [_corners(bounds) for bounds in scene.instance_bounds]
     boxes = np.array(corners) @ view.camera.view_from_world[:3, :3].T + view.camera.view_from_world[:3, 3]  # (i, 8, 3)
     distance = -boxes[..., 2]
     if distance.max() <= 0:
@@ -96,11 +100,24 @@ def reason_of_cut(scene: Scene, view: View) -> str:
     """
     camera, told = view.camera, []
     near, far = camera.clip_planes(scene.bounds)
-    if camera.near is not None and (names := _parts(scene, view, [(0, 0, 1, near), (0, 0, -1, 0)])):
+    in_reach = camera.near is not None and (camera.ortho is not None or _is_near(scene, view))  # quick for most frames
+    if in_reach and (names := _parts(scene, view, [(0, 0, 1, near), (0, 0, -1, 0)])):
         told.append(f"the camera's near plane, near = {near:g}, cuts away parts of {', '.join(names)}")
     if camera.far is not None and (names := _parts(scene, view, [(0, 0, -1, -far)])):
         told.append(f"the camera's far plane, far = {far:g}, cuts away parts of {', '.join(names)}")
     return "; ".join(told)
+
+
+def _is_near(scene: Scene, view: View) -> bool:
+    """Whether a surface is as near to the eye as the corners of the near plane."""
+    assert view.camera.near is not None
+    reach = view.camera.near * _slant(view.camera, view.size)
+    return nearest_surface(scene, np.asarray(view.camera.eye), reach) is not None
+
+
+def _slant(camera: Camera, size: Size) -> float:
+    """The length of the ray through a corner of the picture, of a perspective camera, at distance 1."""
+    return float(np.sqrt(1 + np.square(camera.half_extent(size)).sum()))
 
 
 def _parts(scene: Scene, view: View, planes: list[tuple[float, float, float, float]]) -> list[str]:
@@ -113,11 +130,11 @@ def _parts(scene: Scene, view: View, planes: list[tuple[float, float, float, flo
         sides = [(1, 0, -half_x, 0), (-1, 0, -half_x, 0), (0, 1, -half_y, 0), (0, -1, -half_y, 0)]
     else:
         sides = [(1, 0, 0, half_x), (-1, 0, 0, half_x), (0, 1, 0, half_y), (0, -1, 0, half_y)]
-    within = np.array([*planes, *sides], float)
+    within = np.array([*planes, *sides], float) @ view.camera.view_from_world  # the planes, in world space
     names = []
-    for instance in scene.instances:
-        matrix = within @ view.camera.view_from_world @ instance.world_from_local  # the planes, in local space
-        if _reaches(instance.mesh, matrix):
+    for number in _reached(scene.instance_bounds, within):
+        instance = scene.instances[number]
+        if _reaches(instance.mesh, within @ instance.world_from_local):
             names.append(f"'{shorten(instance.name or instance.mesh.name)}'")
             if len(names) == MOST_NAMES:
                 return [*names[:-1], "others"]
@@ -127,19 +144,22 @@ def _parts(scene: Scene, view: View, planes: list[tuple[float, float, float, flo
 def _reaches(mesh: Mesh, planes: np.ndarray) -> bool:
     """Has a triangle a point on the positive side of all `planes` (p, 4), of local space?"""
 
-    def values(points: np.ndarray) -> np.ndarray:
-        return points @ planes[:, :3].T + planes[:, 3]
-
-    boxes = np.array([_corners(box) for box in mesh.chunk_bounds])  # (c, 8, 3)
-    for number in np.flatnonzero((values(boxes).max(axis=1) > 0).all(axis=1)).tolist():
+    for number in _reached(mesh.chunk_bounds, planes):
         corners = mesh.vertices[mesh.chunk(number)].astype(np.float64)  # (n, 3, 3)
-        at_corners = values(corners)
+        at_corners = corners @ planes[:, :3].T + planes[:, 3]
         if (at_corners > 0).all(axis=2).any():
             return True
         straddling = (at_corners.max(axis=1) > 0).all(axis=1)
         if any(clipped(triangle, planes) for triangle in corners[straddling]):
             return True
     return False
+
+
+def _reached(boxes: np.ndarray, planes: np.ndarray) -> list[int]:
+    """The numbers of the boxes (n, 2, 3) that have, of each of the `planes` (p, 4), a point on the positive side."""
+    low, high = boxes[:, 0, None], boxes[:, 1, None]  # (n, 1, 3) each
+    highest = np.maximum(low * planes[:, :3], high * planes[:, :3]).sum(axis=2) + planes[:, 3]  # (n, p)
+    return np.flatnonzero((highest > 0).all(axis=1)).tolist()
 
 
 def clipped(polygon: np.ndarray, planes: np.ndarray) -> list[np.ndarray]:

@@ -13,6 +13,7 @@ from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
 from ..maths.tangents import mikktspace
 
 Wrap = Literal["repeat", "mirror", "clamp"]
+ALIKE = 1e-5  # 1 - cosine: nearer normals are the same, but for rounding
 CHUNK = 256  # triangles, whose distance to a point is taken together
 CREASE_DEGREES = 40.0  # faces that meet at less than this share a normal; 30-60 is the usual range of modelling tools
 
@@ -218,6 +219,16 @@ class Mesh:
     def bounds(self) -> np.ndarray:
         """(2, 3) float64: the least and greatest local coordinates."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)], np.float64)
+
+    @cached_property
+    def is_smooth(self) -> bool:
+        """Whether the normals of a vertex and of a triangle there differ, as on a curved surface."""
+        assert self.normals is not None  # __post_init__ makes them
+        a, b, c = np.moveaxis(self.vertices.astype(np.float64)[self.faces], 1, 0)
+        facets = np.cross(b - a, c - a)
+        along = (self.normals[self.faces] * facets[:, None]).sum(axis=2)
+        lengths = np.linalg.norm(self.normals, axis=1)[self.faces] * np.linalg.norm(facets, axis=1)[:, None]
+        return bool((np.abs(along) < (1 - ALIKE) * lengths).any())
 
     @cached_property
     def chunk_bounds(self) -> np.ndarray:

@@ -120,8 +120,13 @@ class Scene:
     @cached_property
     def bounds(self) -> np.ndarray:
         """(2, 3) float64: the least and greatest world coordinates."""
-        bounds = np.array([instance.bounds for instance in self.instances])
+        bounds = self.instance_bounds
         return np.array([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
+
+    @cached_property
+    def instance_bounds(self) -> np.ndarray:
+        """(instances, 2, 3) float64: the bounds of each."""
+        return np.array([instance.bounds for instance in self.instances])
 
     def _bounds_to_frame(self) -> np.ndarray:
         """The bounds, unless a few vertices lie far outside of all the others: then those of the others."""
@@ -186,6 +191,11 @@ class Scene:
     def bends_normals(self) -> bool:
         """Whether a normal map or a height map changes the normals of some mesh."""
         return any(instance.mesh.material.bends_normals for instance in self.instances)
+
+    @cached_property
+    def is_smooth(self) -> bool:
+        """Whether the shading normals of some surface are not those of its triangles."""
+        return self.bends_normals or any(mesh.is_smooth for mesh in {instance.mesh for instance in self.instances})
 
     @cached_property
     def feature_distance(self) -> float | None:

@@ -135,13 +135,13 @@ class _Cast:
         self._needs_hits = not is_hard(question.falloff) or any(one.needs_hits for one in integrands.values())
 
     def __call__(self, points: Points, directions: np.ndarray, randoms: Randoms) -> Sample:
-        hits = None
+        hits, ways = None, points.ways(directions)
         if self._needs_hits:
-            hits = self._setting.world.first_hit(points.position, directions, self._limit)
+            hits = self._setting.world.first_hit(points.position, ways, self._limit)
             open = self._setting.open(hits.distance)
         else:
-            open = self._setting.open_along(points.position, directions)
-        return Sample(self._setting, points, directions, open, hits, randoms)
+            open = self._setting.open_along(points.position, ways)
+        return Sample(self._setting, points, directions, ways, open, hits, randoms)
 
 
 def _bright_sky(
@@ -162,6 +162,6 @@ def _towards_bright(setting: Setting, points: Points, stratum: Stratum, random: 
     directions, radiance = setting.sky.towards_bright(*stratum.square(len(points), random))
     cosine = (directions * points.normal).sum(axis=1)
     rising = np.flatnonzero((cosine > 0) & (cosine**2 >= 1 - setting.covered))
-    open = setting.open_along(points.position[rising], directions[rising])
+    open = setting.open_along(points.position[rising], points.ways(directions)[rising])
     light[rising] = (open * cosine[rising])[:, None] * radiance[rising] / np.float32(np.pi * setting.covered)
     return light

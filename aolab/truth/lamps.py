@@ -68,10 +68,10 @@ def _sample(
     towards = sender - points.position[found]
     distance = np.linalg.norm(towards, axis=1)
     towards /= np.maximum(distance, np.float32(1e-30))[:, None]
-    rising = (towards * points.normal[found]).sum(axis=1)
+    rising = points.cosine(towards, found, setting.covered)
     facing = -(towards * normal).sum(axis=1)
     closed = 1 - setting.open(distance)
-    counts = (facing > 0) & (rising > 0) & (rising**2 >= 1 - setting.covered) & (closed > 0)
+    counts = (facing > 0) & (rising > 0) & (closed > 0)
     counts = np.flatnonzero(counts)
     blocked = world.occluded(points.position[found[counts]], towards[counts], distance[counts])
     counts = counts[~blocked]

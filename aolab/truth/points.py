@@ -1,6 +1,7 @@
 """Where the camera's pixels lie on the surfaces: from the G-buffer, set onto the triangles that rays will meet."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -32,9 +33,42 @@ class Points:
 
     position: np.ndarray  # (n, 3) float32: where rays start, lifted off the surface
     normal: np.ndarray  # (n, 3) float32, unit: the G-buffer's, on the viewer's side
+    facet: np.ndarray  # (n, 3) float32, unit: the triangle's, on the same side
 
     def __len__(self) -> int:
         return len(self.position)
+
+    @cached_property
+    def are_smooth(self) -> bool:
+        """Whether some shading normals are not those of the triangles."""
+        return not np.array_equal(self.normal, self.facet)
+
+    def ways(self, directions: np.ndarray) -> np.ndarray:
+        """(n, 3): the ways on which `directions` (n, 3) are traced, as `wayAlong` in glsl/lib/receiver.glsl.
+
+        A direction that leads under the triangle, as shading normals allow, is mirrored at the triangle's plane.
+        """
+        if not self.are_smooth:
+            return directions
+        return directions - self.facet * np.minimum(2 * (directions * self.facet).sum(axis=1), 0)[:, None]
+
+    def cosine(self, ways: np.ndarray, where: np.ndarray, covered: float) -> np.ndarray:
+        """(m,): π times the density of the directions that are traced along `ways` (m, 3), at the points `where` (m,).
+
+        It is cosθ within the cone that `covered` describes (see `hemisphere`), plus that of the mirrored direction.
+        """
+        density = _within((ways * self.normal[where]).sum(axis=1), covered)
+        if not self.are_smooth:
+            return density
+        rising = (ways * self.facet[where]).sum(axis=1)
+        mirrored = ways - 2 * self.facet[where] * rising[:, None]
+        density = density + _within((mirrored * self.normal[where]).sum(axis=1), covered)
+        return np.where(rising > 0, density, 0)
+
+
+def _within(cosine: np.ndarray, covered: float) -> np.ndarray:
+    """The cosines of directions within the cone, 0 of others."""
+    return np.where((cosine > 0) & (cosine**2 >= 1 - covered), cosine, 0)
 
 
 class Surface:
@@ -58,6 +92,7 @@ class Surface:
         own = normals == "geometric" and "geometricNormal" in frame.buffers
         self._view_z, self._albedo = frame["viewZ"], frame["albedo"]
         self._normal = frame["geometricNormal" if own else "viewNormal"]
+        self._facet = frame["facetNormal" if "facetNormal" in frame else "viewNormal"]
         self._world = world
         self._world_from_view = np.linalg.inv(view.camera.view_from_world)
         self._eye = self._world_from_view[:3, 3] - world.centre
@@ -78,7 +113,10 @@ class Surface:
     def points(self, where: np.ndarray) -> Points:
         """The points of the pixels number `where` (m,). Safe to call from any thread."""
         pixel = self.pixel[where]
-        shading = _unit(self._normal.reshape(-1, 3)[pixel].astype(np.float64) @ self._world_from_view[:3, :3].T)
+        shading, facet = (
+            _unit(normal.reshape(-1, 3)[pixel].astype(np.float64) @ self._world_from_view[:3, :3].T)
+            for normal in (self._normal, self._facet)
+        )
         position, geometric, same = self._meet(pixel, (0.0, 0.0))
         for offset in BESIDE:
             if same.all():
@@ -87,11 +125,14 @@ class Surface:
             position[rest], geometric[rest], same[rest] = self._meet(pixel[rest], offset)
         rest = np.flatnonzero(~same)
         shown, pixel_width = self._shown(pixel[rest])
-        position[rest] = shown + shading[rest] * (pixel_width + self._rounding)[:, None]
+        position[rest] = shown + facet[rest] * (pixel_width + self._rounding)[:, None]
         away = (shading * geometric).sum(axis=1) < FACING
         flat = np.linalg.norm(shading - geometric, axis=1) < HALF_ROUNDING
+        facet = np.where(same[:, None], geometric, facet)
         shading = np.where((same & (away | flat))[:, None], geometric, shading)
-        return Points(position.astype(np.float32), shading.astype(np.float32))
+        flat = np.linalg.norm(shading - facet, axis=1) < HALF_ROUNDING
+        facet = np.where(flat[:, None], shading, facet)
+        return Points(position.astype(np.float32), shading.astype(np.float32), facet.astype(np.float32))
 
     def _meet(self, pixel: np.ndarray, offset: tuple[float, float]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Where rays through pixels meet a triangle, lifted (m, 3); its normal (m, 3); is it the G-buffer's (m,)?

@@ -55,8 +55,9 @@ def reference(
     module, by name, class or instance, from a `Question`, or from a frame, with the frame's size and camera.
 
     `rays`, even, are cast from each pixel's centre, stratified, with density cosθ/π around the G-buffer's normal. They
-    start off the surface (`World.lift`, `points.Surface`); a ray that dips below its triangle, as shading normals
-    allow, meets that triangle and is blocked. All triangles block, from both sides; holes of cut-out textures do not.
+    start off the surface (`World.lift`, `points.Surface`); a ray that leads under its triangle, as shading normals
+    allow, is mirrored at the triangle's plane (`points.Points.ways`). All triangles block, from both
+    sides; holes of cut-out textures do not.
     `error` is a target for the standard error, as a share of the buffer's root mean square over the image: pixels get
     up to 16 times `rays` where the error around them is greater. A `Notice` names a buffer that misses the target.
 

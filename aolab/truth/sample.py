@@ -63,11 +63,12 @@ class Setting:
 
 @dataclass
 class Sample:
-    """One ray a point. `hits` is None if no integrand reads it."""
+    """One ray a point, along its way (`Points.ways`). `hits` is None if no integrand reads it."""
 
     setting: Setting
     points: Points
     directions: np.ndarray  # (n, 3) float32, world space, unit
+    ways: np.ndarray  # (n, 3)
     open: np.ndarray  # (n,) float32
     hits: Hits | None
     randoms: Randoms
@@ -92,7 +93,7 @@ class Sample:
         """Positions and normals (blocked, 3) of the hits, on the side that was hit."""
         b = self.blocked
         return self.setting.world.hit_surface(
-            self.points.position[b], self.directions[b], self.first.distance[b], self.first.triangle[b]
+            self.points.position[b], self.ways[b], self.first.distance[b], self.first.triangle[b]
         )
 
     @cached_property

@@ -12,8 +12,8 @@ def sent(sample: Sample) -> np.ndarray:
     """(n, 3): the radiance that a blocking surface sends along each ray, times its blocked share; 0 along open rays."""
     setting, b = sample.setting, sample.blocked
     positions, normals = sample.hit_surface
-    rising = (sample.directions[b] * sample.points.normal[b]).sum(axis=1)
-    facing = -(sample.directions[b] * normals).sum(axis=1)
+    rising = sample.points.cosine(sample.ways[b], b, setting.covered)
+    facing = -(sample.ways[b] * normals).sum(axis=1)
     geometry = rising * facing / np.maximum(sample.first.distance[b] ** 2, np.float32(1e-30))
     light = skylight(sample, positions, normals)
     for lamp in setting.lights:

@@ -16,7 +16,7 @@ from ..scene.view import Size, View
 from ..version import __version__
 from . import cache as disk
 
-SURFACES = ("viewZ", "viewNormal", "albedo", "emission", "geometricNormal")
+SURFACES = ("viewZ", "viewNormal", "facetNormal", "albedo", "emission", "geometricNormal")
 
 
 @dataclass(frozen=True)

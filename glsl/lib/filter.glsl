@@ -1,4 +1,5 @@
-// Distance to the tangent plane: the geometry-aware filters use it to reject neighbours on another surface.
+// Distance to the plane of the triangle: the geometry-aware filters use it to reject neighbours on another surface. The
+// plane across a shading normal would reject neighbours on the same triangle.
 
 #include "lib/space.glsl"
 
@@ -9,9 +10,14 @@ const float PLANE_TOLERANCE = 0.002;
 
 const float COT_22_5 = 2.414214;  // distance / half the height, at 45°
 
-// dot(normal, position) of the point at depth `viewZ` on a ray with `normalDotRay` = dot(normal.xy, ray.xy).
-float alongNormal(float normalDotRay, float normalZ, float viewZ) {
-    return orthographic ? normalDotRay + normalZ * viewZ : (normalZ - normalDotRay) * viewZ;
+// dot(normal, position) of the point at depth `viewZ` on a ray with `dotRay` = dot(normal.xy, ray.xy): for two normals.
+vec2 alongNormals(vec2 dotRay, vec2 normalZ, float viewZ) {
+    return orthographic ? dotRay + normalZ * viewZ : (normalZ - dotRay) * viewZ;
+}
+
+// The smaller distance to two planes.
+float nearerPlane(vec2 distances) {
+    return min(abs(distances.x), abs(distances.y));
 }
 
 // The tolerance at depth `viewZ`, in scene units; `halfHeight`: that of an orthographic picture.

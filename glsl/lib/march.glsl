@@ -16,6 +16,7 @@ uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
+uniform sampler2D facetNormal;  // of the triangle, unit, view space
 
 const float OPEN = 2.0;   // larger than any share of a reach
 
@@ -25,9 +26,10 @@ bool receiverHere(out Receiver receiver, float reach) {
     float centreZ = texelFetch(viewZ, pixel, 0).r;
     if (isBackground(centreZ)) return false;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    viewPos += normal * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
-    receiver = receiverAt(pixel, viewPos, normal, texel_size);
+    viewPos += facet * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
+    receiver = receiverAt(pixel, viewPos, normal, facet, texel_size);
     return true;
 }
 
@@ -38,7 +40,7 @@ bool receiverHere(out Receiver receiver) {
 
 // Is point `j` on direction `i` blocked? `along`: its distance as a share of the reach; `occluder`: the blocker.
 bool isPointBlocked(Receiver receiver, int i, int j, out float along, out Occluder occluder) {
-    vec3 way = receiver.frame * kernel[i].xyz * radius;
+    vec3 way = wayAlong(receiver, receiver.frame * kernel[i].xyz * radius);
     along = (float(j) + interleavedOffset(kernel[i].w, receiver.set)) / float(steps);
     return isBlocked(receiver, receiver.viewPos + way * along, thickness * radius, occluder);
 }

@@ -31,7 +31,7 @@ bool isBackground(float viewZ) {
     return viewZ < -3.0e38;
 }
 
-// The distance, in scene units, to lift a point along its normal before points within `reach` are tested for blocking:
+// The distance, in scene units, to lift a point along its triangle's normal before points within `reach` are tested for blocking:
 // the `bias`, but at least a pixel's width at the farthest tested point. A texel stores the depth of its centre, which
 // is up to half a pixel from the lookup in x and in y. That moves a plane by at most 0.71 pixels, so it cannot block
 // itself.

@@ -2,7 +2,7 @@
 // tangent plane and by the normal. The window is 9 wide with half weights at its ends: symmetric, and still every set of
 // the 4×4 interleaved pattern is counted equally, so that the pattern cancels on a plane.
 // S3HO (2012): "geometry-aware 8×8 bilateral (weights: distance and normal)".
-// Inputs: sources (lib/sources.glsl), viewZ, viewNormal. Outputs: results, the sources filtered.
+// Inputs: sources (lib/sources.glsl), viewZ, viewNormal, facetNormal. Outputs: results, the sources filtered.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
@@ -12,6 +12,7 @@ const bool vertical;
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
+uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
 
 const int REACH = 4;
@@ -26,17 +27,19 @@ void main() {
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
-    float normalDotRay = dot(normal.xy, ray);
-    float planeOffset = alongNormal(normalDotRay, normal.z, centreZ);
+    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec2 dotRay = vec2(dot(facet.xy, ray), dot(normal.xy, ray));
+    vec2 upward = vec2(facet.z, normal.z);
+    vec2 planeOffset = alongNormals(dotRay, upward, centreZ);
     float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);
     // the rays of a row, or column, differ in one component: by this much a pixel
-    float rayStep = vertical ? normal.y * ray_from_pixel.y : normal.x * ray_from_pixel.x;
+    vec2 rayStep = vertical ? vec2(facet.y, normal.y) * ray_from_pixel.y : vec2(facet.x, normal.x) * ray_from_pixel.x;
     float weights = 1.0;
 #pragma unroll
     for (int i = -REACH; i <= REACH; ++i) {
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
-        float plane = (alongNormal(normalDotRay + float(i) * rayStep, normal.z, otherZ) - planeOffset) / tolerance;
+        float plane = nearerPlane(alongNormals(dotRay + float(i) * rayStep, upward, otherZ) - planeOffset) / tolerance;
         float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
         float share = i == 0 ? 0.0 : abs(i) == REACH ? 0.5 : 1.0;  // the centre is in the sum already
         // the background's plane distance is infinite

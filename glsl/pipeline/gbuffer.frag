@@ -5,6 +5,7 @@
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
+//            surfaceFacetNormal  unit view-space normal of the triangle, on the side of surfaceNormal (RGBA16F, w 0)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 //            surfaceGeometricNormal  surfaceNormal without normal and height maps (RGBA16F)
 //            surfaceReliefU, surfaceReliefV  gradients of u and v in view space; w: the height map's number from 1, 0 for
@@ -12,6 +13,7 @@
 
 #include "lib/space.glsl"
 
+const bool with_facetNormal;
 const bool with_uv;
 const bool with_tangent;
 const bool with_emission;
@@ -33,6 +35,7 @@ uniform sampler2D normal_texture;
 uniform float normal_scale;
 uniform bool normal_mapped;
 uniform int relief_number;   // of each mesh, from 1; 0 for none
+uniform bool is_smooth;  // of each mesh: its normals are not those of its triangles
 uniform vec4 pixel_from_ray;
 uniform mat4 last_from_view;        // the last camera's view space from this one's
 uniform vec4 last_pixel_from_ray;
@@ -48,6 +51,7 @@ flat in float winding;
 out float surfaceViewZ;
 out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
+out vec4 surfaceFacetNormal;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
 out vec4 surfaceEmission;
@@ -118,6 +122,11 @@ void main() {
         if (with_reliefV) surfaceReliefV = vec4(0.0);
     }
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
+    if (with_facetNormal) {
+        // derivatives over a pixel are rounded, in a large triangle: those of a flat mesh are not needed
+        vec3 facet = is_smooth ? normalize(faceNormal) : side * normal;
+        surfaceFacetNormal = vec4(faceforward(facet, -surfaceNormal.xyz, facet), 0.0);
+    }
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
     if (with_emission) surfaceEmission = vec4(emission * texture(emission_texture, uv).rgb, 1.0);
