@@ -7,7 +7,7 @@ import pytest
 import small_scenes
 
 import aolab
-from aolab import Camera, PointLight
+from aolab import Camera, PointLight, SpotLight
 from aolab.measures.flicker import flicker
 from aolab.modules import MODULES
 
@@ -17,7 +17,7 @@ CENTRE = np.array((0.1, 0.5, 0.0))
 EYE = tuple(CENTRE + DISTANCE * AWAY)
 PARALLEL = Camera(EYE, tuple(CENTRE), ortho=HEIGHT)
 PINHOLE = Camera(EYE, tuple(CENTRE), fov=float(2 * np.degrees(np.arctan(HEIGHT / 2 / DISTANCE))), near=150, far=300)
-LIGHTS = (PointLight((2, 4, 3), (30.0, 30.0, 30.0)),)
+LIGHTS = (PointLight((2, 4, 3), (30.0, 30.0, 30.0)), SpotLight((1, 4, 2), (-1, -4, -2), (20.0, 20.0, 20.0)))
 
 
 def differences(first: aolab.Frame, second: aolab.Frame, names) -> dict[str, float]:

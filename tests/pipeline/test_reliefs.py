@@ -73,22 +73,33 @@ def test_given_tangents_are_used(lab):
     np.testing.assert_allclose(frame.world_normal()[frame.mask].mean(axis=0), (0, 0.8, -0.6), atol=6e-3)
 
 
+def beside_a_wall(texture: Texture, height: float = 0.5) -> Scene:
+    """The floor with a normal map, and a wall at x = 0.4."""
+    scene = floor(Material(normal_texture=texture))
+    wall = small_scenes.box((0.4, 0.0, -1.0), (0.6, height, 1.0))
+    return scene.replace(instances=(*scene.instances, Instance(wall)))
+
+
 def test_the_choice_of_normals_is_the_estimates_and_the_references(lab):
-    """A hemisphere that is tilted by 37 degrees dips into its floor; the vertices' own does not."""
-    scene = floor(Material(normal_texture=normal_map((tuple(TILTED),))))
-    for module in ("ssao", "ambient_transfer", "ssdo"):
-        settings = {"radius": 0.5, "size": (48, 36), "steps": 8, "filter": "none"}
-        shading, geometric = (
-            lab.render(scene, module, normals=normals, **settings) for normals in ("shading", "geometric")
-        )
-        assert (geometric["visibility"][geometric.mask] == 1).all()
-        middle = np.s_[12:24, 16:32]
-        assert shading["visibility"][middle].mean() < 0.995
-        np.testing.assert_array_equal(shading["viewNormal"], geometric["viewNormal"])
-    exact = (1 + 0.8) / 2  # of a hemisphere tilted by θ over a plane: (1 + cosθ) / 2
-    for normals, expected in (("shading", exact), ("geometric", 1.0)):
-        truth = aolab.reference(scene, size=(16, 12), rays=64, radius=0.5, normals=normals, buffers="visibility")
-        assert np.nanmean(truth["visibility"][4:8, 5:11]) == pytest.approx(expected, abs=6e-3)
+    """A hemisphere that is tilted by 37 degrees towards a wall sees more of the wall than the vertices' own.
+
+    Its directions below the floor are mirrored at the floor, which therefore blocks none of them.
+    """
+    scene = beside_a_wall(normal_map((tuple(TILTED),)))
+    size, near = (48, 36), np.s_[14:22, 24:27]
+    settings = {"radius": 0.5, "falloff": 0.0, "thickness": 10.0, "size": size, "directions": 32, "steps": 16}
+    found, truth = {}, {}
+    for normals in ("shading", "geometric"):
+        frame = lab.render(scene, "ssao", normals=normals, filter="none", accumulate=4, **settings)
+        away = lab.render(floor(scene.instances[0].mesh.material), "ssao", normals=normals, **settings)
+        assert (away["visibility"][away.mask] == 1).all()
+        found[normals] = frame["visibility"][near].mean()
+        rays = aolab.reference(scene, size=size, rays=128, radius=0.5, normals=normals, buffers="visibility")
+        truth[normals] = rays["visibility"][near].mean()
+        np.testing.assert_allclose(frame.world_normal()[near].mean(axis=(0, 1)), (0.6, 0.8, 0.0), atol=6e-3)
+    assert truth["shading"] < truth["geometric"] - 0.1
+    for normals in truth:
+        assert found[normals] == pytest.approx(truth[normals], abs=0.03)
 
 
 def test_scenes_without_maps_draw_and_read_nothing_more(lab, boxes):
@@ -100,12 +111,12 @@ def test_scenes_without_maps_draw_and_read_nothing_more(lab, boxes):
 def test_a_filter_works_on_one_surface_whatever_the_normals(lab):
     """Neighbours whose normals differ by a map alone are of one surface: the mean of 4×4 pixels."""
     bumps = normal_map(((0.6, 0.0, 0.8), (-0.6, 0.0, 0.8)), ((0.0, 0.6, 0.8), (0.0, -0.6, 0.8)))
-    scene = floor(Material(normal_texture=bumps))
+    scene = beside_a_wall(bumps, height=1.5)
     for scale in (1.0, 0.5):
-        frame = lab.render(scene, "ssao", radius=0.5, size=(64, 48), scale=scale)
-        inside = np.s_[16:32, 20:44] if scale == 1 else np.s_[8:16, 10:22]
-        raw, filtered = frame["visibility_raw"][inside], frame["visibility"][16:32, 20:44]
-        assert filtered.std() < 0.6 * raw.std()
+        frame = lab.render(scene, "ssao", radius=2.0, thickness=10.0, size=(64, 48), scale=scale)
+        inside = np.s_[18:30, 30:36] if scale == 1 else np.s_[9:15, 15:18]
+        raw, filtered = frame["visibility_raw"][inside], frame["visibility"][18:30, 30:36]
+        assert np.abs(np.diff(filtered, axis=0)).mean() < 0.6 * np.abs(np.diff(raw, axis=0)).mean()
 
 
 @pytest.mark.filterwarnings("error")
