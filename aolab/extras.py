@@ -30,6 +30,7 @@ EXTRAS = {
     "sweep": Extra("distributed", "pandas pyarrow distributed", "parameter sweeps"),
     "xarray": Extra("xarray", "xarray", "the array of a sweep"),
     "film": Extra("av", "av", "films in .mp4"),
+    "view": Extra("glfw", "glfw", "a window"),
     "tune": Extra("optuna", "optuna", "fitting parameters"),
     "mitsuba": Extra("mitsuba", "mitsuba", "a path tracer as second opinion"),
     "draco": Extra("DracoPy", "DracoPy", "glTF files that Draco compressed"),

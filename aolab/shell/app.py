@@ -16,8 +16,9 @@ from .reproduce import reproduce
 from .scenes import scenes
 from .sweep import sweep
 from .tune import tune
+from .view import view
 
-COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate)
+COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate, view)
 
 app = typer.Typer(
     name="aolab",
