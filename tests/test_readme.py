@@ -2,7 +2,6 @@
 
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -46,7 +45,6 @@ def test_the_python_lines_run(python, tmp_path):
 
 @pytest.mark.slow
 def test_the_shell_lines_run_one_after_another(tmp_path):
-    shutil.copytree(CHECKOUT / "examples" / "models", tmp_path / "examples" / "models")
     (tmp_path / "out").mkdir()
     run = []
     for command, _ in COMMANDS:

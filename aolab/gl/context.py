@@ -1,6 +1,5 @@
 """The one OpenGL context of this process: made when first needed, used by the thread that made it, released on exit."""
 
-import asyncio
 import atexit
 import ctypes
 import os
@@ -10,11 +9,14 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import moderngl
 
 from ..errors import ContextError
+
+if TYPE_CHECKING:
+    from asyncio import AbstractEventLoop
 
 REQUIRED = 330  # OpenGL 3.3 core, which every machine of a course has (macOS stops at 4.1)
 _SOFTWARE_RENDERERS = ("llvmpipe", "softpipe", "swrast", "SwiftShader", "Microsoft Basic Render")
@@ -41,7 +43,7 @@ class _State:
     binding: _Binding = _NONE
     thread: int = 0
     process: int = 0
-    loop: asyncio.AbstractEventLoop | None = None  # of that thread, if it runs one
+    loop: "AbstractEventLoop | None" = None  # of that thread, if it runs one
 
 
 _state = _State()
@@ -53,7 +55,7 @@ def get() -> moderngl.Context:
         _state.context = _create()
         _state.binding = _bound()
         _state.thread, _state.process = threading.get_ident(), os.getpid()
-        _state.loop = asyncio._get_running_loop()
+        _state.loop = running_loop()
         atexit.register(release)
     elif os.getpid() != _state.process:
         raise ContextError(
@@ -128,6 +130,12 @@ def _bind(binding: _Binding) -> None:
             f"EGL does not make the context current (error {egl.eglGetError():#x}). A program that calls eglTerminate, "
             "as pyrender's OffscreenRenderer.delete() does, ends all contexts of the process; use a process for each"
         )
+
+
+def running_loop() -> "AbstractEventLoop | None":
+    """The event loop of this thread, if it runs one; asyncio is imported by those who use it."""
+    asyncio = sys.modules.get("asyncio")
+    return asyncio._get_running_loop() if asyncio else None
 
 
 def owner() -> _State | None:

@@ -4,16 +4,17 @@ JupyterLab runs the callbacks of widgets in threads of their own (subshells, ipy
 thread. If that thread runs an event loop, as a kernel's main thread does, the loop makes the call and the caller waits.
 """
 
-import asyncio
 import sys
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future
 from functools import wraps
-from typing import ParamSpec, TypeVar
+from typing import TYPE_CHECKING, ParamSpec, TypeVar
 
 from ..errors import ContextError
 from . import context
+
+if TYPE_CHECKING:
+    from asyncio import AbstractEventLoop
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
@@ -35,6 +36,8 @@ def handed(function: Callable[Arguments, Result]) -> Callable[Arguments, Result]
         if loop is None:
             with context.current():  # raises if this is the wrong thread
                 return function(*args, **named)
+        from concurrent.futures import Future  # with asyncio, it takes a part of the start-up
+
         future: Future[Result] = Future()
         started = threading.Event()
 
@@ -69,20 +72,20 @@ def post(function: Callable[[], object]) -> None:
         loop.call_soon_threadsafe(function)
 
 
-def _other_loop() -> asyncio.AbstractEventLoop | None:
+def _other_loop() -> "AbstractEventLoop | None":
     """The running loop of the context's thread, if that is another thread than this one."""
     owner = context.owner()
     if owner is None:  # no context yet: in a notebook, the kernel's main thread shall make it, since it never ends
         loop = _kernel_loop() if threading.current_thread() is not threading.main_thread() else None
     elif owner.thread == threading.get_ident():
-        owner.loop = asyncio._get_running_loop() or owner.loop  # a thread may start its loop after the first render
+        owner.loop = context.running_loop() or owner.loop  # a thread may start its loop after the first render
         return None
     else:
         loop = owner.loop
     return loop if loop is not None and loop.is_running() else None
 
 
-def _kernel_loop() -> asyncio.AbstractEventLoop | None:
+def _kernel_loop() -> "AbstractEventLoop | None":
     ipython = sys.modules.get("IPython")
     kernel = getattr(ipython.get_ipython(), "kernel", None) if ipython else None
     return getattr(getattr(kernel, "io_loop", None), "asyncio_loop", None)

@@ -17,7 +17,8 @@ def load(source: object, **parameters: object) -> Scene:
     - a scene of `scenes/` by name, with its parameters as keywords or in a query: `load("toasters", time=1.5)`,
       `load("toasters?time=1.5")`;
     - a file: `.glb`, `.gltf`, `.obj` (with `.mtl`), `.ply`, `.stl`, `.off`, `.3mf`, with parameters likewise:
-      `load("walk.glb", time=0.5)`, `load("scan.ply?up_axis=z")`. Files that it refers to must lie in its own folder;
+      `load("walk.glb", time=0.5)`, `load("scan.ply?up_axis=z")`. Files that it refers to must lie in its own folder.
+      `load("knot.glb")` finds the model that comes with aolab;
     - a `trimesh.Scene` or `trimesh.Trimesh`, a `pyrender.Scene`, or an `aolab.Scene`, which is returned as it is.
 
     A file's parameters: `time` (seconds) and `animation` (name or number) pose a glTF animation; `up_axis` ("y" or

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import paths
 from ..errors import Error, FileError, ParameterError, SceneError, shorten, suggestion
 from ..input import Budget, kind, read_file
 from ..scene.scene import Scene
@@ -59,7 +60,8 @@ def load_file(source: str | PathLike[str], keywords: Mapping[str, object]) -> Sc
     # numbers of a file may be of any size: `Mesh` and others refuse what is not finite
     with _named_errors(path, file_format), np.errstate(all="ignore"):
         content = _content(path, file_format, module, options)
-        return scene_of(content, shorten(path.stem), f"{path}{query_of(options)}", options.shadows)
+        source = path.name if path.parent == paths.scenes() else path  # so that a picture's metadata serve anywhere
+        return scene_of(content, shorten(path.stem), f"{source}{query_of(options)}", options.shadows)
 
 
 def _content(path: Path, file_format: str, module: str, options: FileOptions) -> Content:
@@ -79,8 +81,16 @@ def _path_and_query(source: str | PathLike[str]) -> tuple[Path, str]:
         raise FileError(f"'{shorten(text, 200)}' is a URL; download the file and load that")
     name, separator, query = text.rpartition("?")
     if separator and not _exists(text):
-        return _existing_file(name), query
-    return _existing_file(text), ""
+        return _existing_file(_found(name)), query
+    return _existing_file(_found(text)), ""
+
+
+def _found(name: str) -> str:
+    """The path of the model of that name that comes with aolab, in scenes/, unless a file of that name is here."""
+    shipped = paths.scenes() / name
+    if Path(name).name == name and Path(name).suffix.lower() in FORMATS and not _exists(name) and _exists(str(shipped)):
+        return str(shipped)
+    return name
 
 
 def _exists(text: str) -> bool:

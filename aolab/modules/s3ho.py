@@ -1,11 +1,13 @@
 """Screen-space spherical harmonic occlusion: visibility and cosine as 16 coefficients, apart from any light."""
 
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
 
+from ..errors import Notice
 from ..maths.harmonics import clamped_cosine, rotation
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
@@ -138,4 +140,7 @@ class S3HO(Marched):
         return passes
 
     def resolved(self, scene: Scene) -> "S3HO":
+        if self.indirect and scene.emits:
+            text = "s3ho: its bounce reflects lights and environment; the emission of surfaces lights no others"
+            warnings.warn(text, Notice, stacklevel=2)
         return with_distance_clamp(super().resolved(scene))

@@ -360,3 +360,13 @@ def test_a_sparse_file_of_20_gb_is_not_read(tmp_path, suffix):
     path.touch()
     os.truncate(path, 20_000_000_000)
     refuse(path, "the file is refused: it needs 20 GB of memory, and the limit is 2 GB")
+
+
+def test_the_model_that_comes_with_aolab_is_found_anywhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    scene = aolab.load("knot.glb")
+    assert (scene.source, scene.name) == ("knot.glb", "knot")
+    assert aolab.load("knot.glb?shadows=0").source == "knot.glb?shadows=0"
+    (tmp_path / "knot.glb").write_bytes(b"")
+    with pytest.raises(FileError, match="is empty"):
+        aolab.load("knot.glb")  # a file of that name in the folder comes first

@@ -62,7 +62,7 @@ def test_an_interrupt_at_every_line():
     lab, scene = aolab.Lab((24, 16)), aolab.load("boxes")
 
     def render() -> aolab.Frame:
-        return lab.render(scene, "ssdo", bounces=1, occluders="layers")
+        return lab.render(scene, "ssdo", bounces=1, occluders="layers").complete()
 
     names = ("image", "viewZ", "bounce")
     before = render()

@@ -41,4 +41,4 @@ if __name__ == "__main__":
     scene = trimesh.Scene()
     scene.add_geometry(coloured(knot(), "clay", (0.75, 0.32, 0.2)), geom_name="knot")
     scene.add_geometry(coloured(plate, "plaster", (0.8, 0.8, 0.78)), geom_name="plate")
-    scene.export(Path(__file__).with_name("knot.glb"))
+    scene.export(Path(__file__).parents[1] / "scenes" / "knot.glb")
