@@ -104,6 +104,7 @@ def test_radiance_is_the_sum_of_its_parts_and_max_depth_adds_bounces():
     assert frames[3].image.mean() > frames[2].image.mean() + 5
 
 
+@pytest.mark.filterwarnings("ignore:nothing is drawn:aolab.Notice")
 @needs_mitsuba
 @pytest.mark.parametrize(
     ("shape", "target"),
@@ -129,6 +130,7 @@ def test_the_environment_is_where_we_look_it_up(shape, target):
 
 
 @needs_mitsuba
+@pytest.mark.filterwarnings("ignore:the camera's near plane:aolab.Notice")
 def test_a_surface_before_the_near_plane_is_not_seen():
     near, far = quad((0, 0, 1), (1, 0, 0), (0, 1, 0), 0.8), quad((0, 0, 0), (1, 0, 0), (0, 1, 0), 0.5)
     sun = aolab.DirectionalLight((3, 0, -1), (1.0, 1.0, 1.0))  # from the side, past the nearer one
