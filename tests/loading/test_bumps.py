@@ -72,7 +72,8 @@ def painted(folder: Path, mtl: str, values: object = ((0, 255), (51, 102))) -> M
     Image.fromarray(np.array(values, np.uint8)).save(folder / "gray.png")
     (folder / "blue.png").write_bytes(png((128, 128, 255, 255)))
     (folder / "m.mtl").write_text("newmtl m\n" + mtl)
-    text = "mtllib m.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
+    text = "mtllib m.mtl\nusemtl m\n"
+    text += "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3 4/4\n"
     (folder / "m.obj").write_text(text)
     return loaded(folder / "m.obj").material
 
