@@ -1,10 +1,11 @@
-"""MTL, the materials of Wavefront OBJ: diffuse colour and its texture, opacity, emission.
+"""MTL, the materials of Wavefront OBJ: diffuse colour and its texture, opacity, emission, bumps.
 
 Source: "MTL material format", Alias|Wavefront 1995. The format does not state a colour space: colours are taken as
 sRGB, as web viewers take them.
 """
 
 from dataclasses import dataclass, field
+from typing import TypedDict
 
 import numpy as np
 from PIL import Image
@@ -13,7 +14,7 @@ from ..errors import Error, FileError, shorten
 from ..input import TooLarge
 from ..pictures.images import linear_from_srgb, read_image
 from ..scene.environment import HALF_MAX
-from ..scene.mesh import Material, Texture, Wrap
+from ..scene.mesh import HeightMap, Material, Texture, Wrap
 from .folder import Folder, decoded
 from .materials import MASK_CUTOFF, alpha_drawn
 from .parts import Notes
@@ -22,6 +23,8 @@ from .parts import Notes
 OPTIONS = {"-blendu": 1, "-blendv": 1, "-cc": 1, "-clamp": 1, "-imfchan": 1, "-mm": 2, "-bm": 1, "-boost": 1,
            "-texres": 1, "-type": 1, "-o": 3, "-s": 3, "-t": 3}  # fmt: skip
 COLORS, MAPS = ("Kd", "Ke"), ("map_Kd", "map_d", "map_Ke")
+BUMPS = ("norm", "map_bump", "map_Bump", "bump", "disp")  # the first one that is stated is used
+COLORED = 8  # a picture whose channels differ by more than this, of 255 and on average, holds normals, not heights
 
 
 @dataclass
@@ -108,8 +111,32 @@ class Library:
             **alpha_drawn("BLEND" if alpha < 1 else mode, MASK_CUTOFF, shown, self._notes),
             emission=emission,
             emission_texture=None if shining is None or not any(emission) else self._texture(shining, used, used),
+            **self._relief(stated, None if used == _Map("") else used, shown),
         )
+        if used == _Map(""):
+            used = next((_map(stated[key]) for key in BUMPS if key in stated), used)
         return Paint(material, np.array(used.scale), np.array(used.offset))
+
+    def _relief(self, stated: dict[str, str], used: "_Map | None", material: str) -> "Relief":
+        """A height map, in units of the model, or a normal map: many programs write normal maps as `map_bump`.
+
+        `used` is the map whose transform the coordinates have; a bump map with another one is left out, with a note.
+        """
+        key = next((key for key in BUMPS if key in stated), None)
+        if key is None:
+            return {}
+        bump = _map(stated[key])
+        if used is not None and (bump.scale, bump.offset) != (used.scale, used.offset):
+            self._notes.add(f"{key} of material ", material, " was left out, as its UV are not those of the colour's")
+            return {}
+        pixels = self._picture(bump.name)
+        if pixels is None:
+            return {}
+        if key == "norm" or np.abs(np.diff(pixels[..., :3].astype(np.int16), axis=2)).mean() > COLORED:
+            return {"normal_texture": self._texture(pixels, bump, bump), "normal_scale": bump.strength}
+        heights = (bump.base + bump.gain * pixels[..., :3].mean(axis=2, dtype=np.float32) / 255) * bump.strength
+        wrap: Wrap = "clamp" if bump.clamp else "repeat"
+        return {"height": HeightMap(heights, shorten(bump.name), (wrap, wrap))}
 
     def _texture(self, pixels: np.ndarray, used: "_Map", named: "_Map") -> Texture:
         wrap: Wrap = "clamp" if used.clamp else "repeat"
@@ -165,6 +192,17 @@ class _Map:
     scale: tuple[float, float] = (1.0, 1.0)
     offset: tuple[float, float] = (0.0, 0.0)
     clamp: bool = False
+    strength: float = 1.0  # -bm
+    base: float = 0.0  # -mm base gain: base + gain × value
+    gain: float = 1.0
+
+
+class Relief(TypedDict, total=False):
+    """The bump map of a material: arguments of `Material`."""
+
+    normal_texture: Texture
+    normal_scale: float
+    height: HeightMap
 
 
 def _map(text: str) -> _Map:
@@ -185,6 +223,10 @@ def _map(text: str) -> _Map:
             found.offset = numbers[0], numbers[1] if len(values) > 1 else 0.0
         elif option == "-clamp":
             found.clamp = values == ["on"]
+        elif option == "-bm" and (strength := _floats(" ".join(values))) and np.isfinite(strength[0]):
+            found.strength = strength[0]
+        elif option == "-mm" and len(range_of := _floats(" ".join(values))) == 2 and np.isfinite(range_of).all():
+            found.base, found.gain = range_of
     found.name = " ".join(words).strip().strip('"')
     return found
 

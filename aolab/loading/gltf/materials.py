@@ -67,11 +67,9 @@ class Materials:
         strength = source.extensions.emissive_strength.emissive_strength
         emission = (np.clip(source.emissive_factor, 0, HALF_MAX) * strength).clip(max=HALF_MAX).tolist()
         glow = source.emissive_texture if any(emission) else None
-        uv = self._uv(info or glow)
-        if glow is not None and self._uv(glow) != uv:
-            text = ": its emissive texture was left out, as its UV are not those of the base colour's"
-            self._notes.add("material ", f"'{name}'", text)
-            glow = None
+        uv = self._uv(info or glow or source.normal_texture)
+        glow = self._with_uv(glow, uv, "emissive", name)
+        bumps = self._with_uv(source.normal_texture, uv, "normal", name)
         return Material(
             base_color=(red, green, blue),
             texture=self._texture(info, name),
@@ -80,8 +78,18 @@ class Materials:
             double_sided=source.double_sided,
             emission=(emission[0], emission[1], emission[2]),
             emission_texture=self._texture(glow, name),
+            normal_texture=self._texture(bumps, name),
+            normal_scale=1.0 if source.normal_texture is None else source.normal_texture.scale,
             **alpha_drawn(source.alpha_mode, source.alpha_cutoff, f"'{name}'", self._notes),
         ), uv
+
+    def _with_uv(self, info: TextureInfo | None, uv: Uv, what: str, material: str) -> TextureInfo | None:
+        """The texture if it has the UV of the material; None, with a note, for other ones."""
+        if info is None or self._uv(info) == uv:
+            return info
+        text = f": its {what} texture was left out, as its UV are not those of the base colour's"
+        self._notes.add("material ", f"'{material}'", text)
+        return None
 
     @staticmethod
     def _uv(info: TextureInfo | None) -> Uv:

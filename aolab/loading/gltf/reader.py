@@ -81,7 +81,9 @@ class _Reader:
         material, uv = self.materials.material(primitive.material, colored=colors is not None)
         if colors is not None and colors.shape[1] == 3:
             colors = np.column_stack([colors, np.ones(len(colors), np.float32)])
-        return Part(shape.vertices, shape.faces, shape.normals, uv.of(shape.attributes), colors, material, name)
+        tangents = shape.attributes.get("TANGENT") if material.normal_texture is not None else None
+        coordinates = uv.of(shape.attributes)
+        return Part(shape.vertices, shape.faces, shape.normals, coordinates, colors, material, name, tangents)
 
     def _placements(self, node: int) -> list[tuple[np.ndarray, str]]:
         """Where the node's mesh stands: once, or once an instance (EXT_mesh_gpu_instancing)."""

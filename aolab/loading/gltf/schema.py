@@ -207,6 +207,10 @@ class TextureInfo(Object):
     extensions: TextureInfoExtensions = TextureInfoExtensions()
 
 
+class NormalTexture(TextureInfo):
+    scale: float = 1.0
+
+
 class MetallicRoughness(Object):
     base_color_factor: Four = [1.0, 1.0, 1.0, 1.0]
     base_color_texture: TextureInfo | None = None
@@ -233,6 +237,7 @@ class Material(Object):
     pbr_metallic_roughness: MetallicRoughness = MetallicRoughness()
     emissive_factor: Three = [0.0, 0.0, 0.0]
     emissive_texture: TextureInfo | None = None
+    normal_texture: NormalTexture | None = None
     alpha_mode: Literal["OPAQUE", "MASK", "BLEND"] = "OPAQUE"
     alpha_cutoff: Annotated[float, Field(ge=0)] = 0.5
     double_sided: bool = False

@@ -60,6 +60,8 @@ class Shapes:
         if indices is None:
             indices = np.arange(len(vertices))
         others = {key: value for key, value in attributes.items() if key not in ALREADY}
+        if primitive.targets:
+            others.pop("TANGENT", None)  # those of the shape at rest; new ones are made
         return Shape(vertices, triangles(indices, mode), normals, others)
 
     def _arrays(self, primitive: Primitive, name: str) -> tuple[dict[str, np.ndarray], np.ndarray | None, int]:
@@ -113,7 +115,8 @@ class Shapes:
             a, b, c = np.moveaxis(blend[..., :3], 2, 0)
             cofactor = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=2)
             normals = np.einsum("vij,vj->vi", cofactor, shape.normals.astype(np.float64))
-        return Shape(vertices, shape.faces, normals, shape.attributes)
+        attributes = {key: value for key, value in shape.attributes.items() if key != "TANGENT"}  # made anew
+        return Shape(vertices, shape.faces, normals, attributes)
 
     def _joint_matrices(self, skin: int, poses: Poses) -> np.ndarray:
         """(joints, 4, 4): world_from_mesh of each joint."""
@@ -131,6 +134,7 @@ class Shapes:
 _KINDS = {
     "POSITION": ("VEC3",),
     "NORMAL": ("VEC3",),
+    "TANGENT": ("VEC4",),
     "TEXCOORD": ("VEC2",),
     "COLOR": ("VEC3", "VEC4"),
     "JOINTS": ("VEC4",),
