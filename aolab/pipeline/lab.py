@@ -29,6 +29,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from ..version import __version__
 from . import lighting, surfaces
+from .doubts import doubts
 from .environments import EnvironmentMaps
 from .estimate import estimate
 from .frame import Frame, Later, lend, noting
@@ -179,6 +180,9 @@ class Lab:
             warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
         elif reason := clipping.reason_of_cut(scene, view):
             warnings.warn(reason, Notice, stacklevel=2)
+        if not type(module).__module__.startswith("aolab."):  # a module of the user's own
+            for doubt in doubts(result, module.outputs):
+                warnings.warn(doubt, Notice, stacklevel=2)
         return result
 
     def _rasterizer(self, scene: Scene, last: Bindings) -> Rasterizer:

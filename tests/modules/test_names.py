@@ -191,6 +191,7 @@ def reads(count: int) -> type[Module]:
     return Many
 
 
+@pytest.mark.filterwarnings("ignore:.*reaches from")  # it is a probe
 def test_as_many_textures_as_opengl_guarantees_are_read_and_not_one_more(lab, boxes):
     """llvmpipe grants 32, and so would hide what fails on macOS."""
     assert lab.render(boxes, reads(16), size=(8, 6)).mask.any()
@@ -199,6 +200,7 @@ def test_as_many_textures_as_opengl_guarantees_are_read_and_not_one_more(lab, bo
 
 
 @pytest.mark.filterwarnings("ignore:.* meshes are not closed:aolab.errors.Notice")
+@pytest.mark.filterwarnings("ignore:.*reaches from")  # it is a probe
 def test_every_kind_of_occluders_leaves_textures_to_its_module(lab, boxes):
     """At least 5 of the 16 textures are left to a pass that reads occluders with their normals and light."""
     more = [f"more{number}" for number in range(5)]

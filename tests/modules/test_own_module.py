@@ -218,3 +218,21 @@ def test_a_size_may_be_an_array(size):
 def test_a_wrong_size_is_a_parameter_error(size):
     with pytest.raises(ParameterError, match="is not two whole numbers"):
         aolab.render("boxes", size=size)
+
+
+@pytest.mark.parametrize(
+    ("value", "doubt"),
+    [
+        ("sqrt(-1.0 - gl_FragCoord.x)", r"'visibility' is NaN or infinite in 100 % of .*division by 0"),
+        ("gl_FragCoord.x > 8.0 ? 1.0 / (gl_FragCoord.y * 0.0) : 0.5", r"NaN or infinite in \d+ %"),
+        ("2.5", r"'visibility' reaches from 2.5 to 2.5; it is a share, in \[0, 1\]"),
+        ("-0.5", r"reaches from -0.5 to -0.5"),
+    ],
+)
+def test_impossible_outputs_are_doubted(value, doubt):
+    class Doubtful(aolab.Module):
+        title = "Doubtful"
+        shader = f"out float visibility;\nvoid main() {{ visibility = {value}; }}\n"
+
+    with pytest.warns(aolab.Notice, match=f"Doubtful: .*{doubt}" if "visibility" in doubt else doubt):
+        aolab.render("boxes", Doubtful, size=(32, 18), filter="none")

@@ -229,6 +229,7 @@ def test_a_filter_of_ones_own_runs_at_the_size_that_it_wants(lab, plane, own, wi
     assert frame.info["parameters"]["amount"] == 0.25
 
 
+@pytest.mark.filterwarnings("ignore:.*reaches from")  # it is a probe
 def test_an_estimate_may_bring_its_filter(lab, plane):
     class Own(Module):
         shader = "none.frag"
@@ -448,6 +449,7 @@ def test_no_occluders_are_drawn_for_a_module_whose_shaders_do_not_include_them(l
 
 
 @pytest.mark.parametrize(("outside", "expected"), [({"mine": -2.0}, -2.0), ({}, 0.25)], ids=["declared", "nearest"])
+@pytest.mark.filterwarnings("ignore:.*reaches from")  # it is a probe
 def test_the_maker_of_a_texture_declares_what_is_read_beyond_its_edge(lab, plane, outside, expected):
     """A depth map of one's own, read one picture's width off to the right: nobody lists its name."""
 
