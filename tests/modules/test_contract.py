@@ -21,6 +21,7 @@ from aolab import (
     Pass,
     PointLight,
     Scene,
+    SpotLight,
     paths,
 )
 from aolab.gl.texture import FORMATS
@@ -42,6 +43,11 @@ OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fi
 WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals")} | {
     ("rsm", "occluders"),
     ("rsm", "shaded"),
+    # virtual lights alone: no estimate of its own, and no occluders without `fill`
+    ("environment_vpl", "normals"),
+    ("environment_vpl", "filter"),
+    # the test scene is 100 units wide, and so are the distances of its virtual lights
+    ("instant_radiosity", "vpl_resolution"),
 }
 
 
@@ -102,7 +108,11 @@ def probe(wall) -> Scene:
         small_scenes.box((0.4, 0.0, -0.3), (0.6, 0.5, 0.2)),
         small_scenes.box((1.6, 1.0, 0.2), (1.9, 1.1, 0.9)),
         camera=wall.camera,
-        lights=(DirectionalLight((-1.0, -2.0, 0.5)), PointLight((2.0, 2.0, 1.0))),
+        lights=(
+            DirectionalLight((-1.0, -2.0, 0.5)),
+            PointLight((2.0, 2.0, 1.0)),
+            SpotLight((2.5, 2.0, 0.5), (-1.0, -0.6, -0.2), (5.0, 5.0, 5.0)),
+        ),
         sky=Environment.sky(sun_direction=(1.0, 1.0, 0.0)),
     )
 
