@@ -46,8 +46,6 @@ WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals"
     # virtual lights alone: no estimate of its own, and no occluders without `fill`
     ("environment_vpl", "normals"),
     ("environment_vpl", "filter"),
-    # the test scene is 100 units wide, and so are the distances of its virtual lights
-    ("instant_radiosity", "vpl_resolution"),
 }
 
 
@@ -111,7 +109,9 @@ def probe(wall) -> Scene:
         lights=(
             DirectionalLight((-1.0, -2.0, 0.5)),
             PointLight((2.0, 2.0, 1.0)),
-            SpotLight((2.5, 2.0, 0.5), (-1.0, -0.6, -0.2), (5.0, 5.0, 5.0)),
+            SpotLight(
+                (2.5, 2.0, 0.5), (-1.0, -0.6, -0.2), (5e5, 5e5, 5e5)
+            ),  # sends as much as the sun on 200 × 200 units
         ),
         sky=Environment.sky(sun_direction=(1.0, 1.0, 0.0)),
     )
