@@ -112,7 +112,8 @@ EDITS = {
         ("lib/pixel_lights.glsl", "max(dot(texelFetch(rsm_normal, texel, 0).xyz, there), 0.0)", "sqrt(squared)"),
     ),
     "pixel lights of half the flux": (("lib/pixel_lights.glsl", "count / PI * cosines", "0.5 * count / PI * cosines"),),
-    "occlusion without a cosine": (("rotated_ssao.frag", "occlusion += cosine *", "occlusion += 5.0 *"),),
+    "a sixteenth of the occlusion": (("rotated_ssao.frag", "strength * occlusion", "strength / 16.0 * occlusion"),),
+    "the mean of 2×2 pixels": (("pipeline/box4.frag", "i <= 2;", "i <= 0;"),),
     "a tenth of the reach": (("rotated_ssao.frag", "float reachPx = radius", "float reachPx = 0.1 * radius"),),
     "one angle for all pixels": (
         ("lib/pixel_lights.glsl", "float(set) / 16.0", "0.1"),
