@@ -30,12 +30,12 @@ void main() {
         vec3 toLight;
         vec3 irradiance = irradianceFrom(i, worldPos, worldNormal, toLight);
         float reach = radius * way.x;
-        if (light_kind[i] != DIRECTIONAL) reach = min(reach, distance(light_position[i], worldPos));
+        reach = min(reach, distanceOf(i, worldPos));
         all += irradiance;
         if (irradiance == vec3(0.0)) continue;
         vec3 viewToLight = mat3(view_from_world) * toLight;
         if (!isSegmentOpen(receiver, viewToLight, reach, way.y, light_steps, thickness * radius)) continue;
-        if (isFilledOpen(receiver, tileOf(i, toLight), surfacePos, worldPos, viewToLight, ray_from_pixel)) {
+        if (isFilledOpen(receiver, tileOf(i, toLight), surfacePos, worldPos, viewToLight, distanceOf(i, worldPos), ray_from_pixel)) {
             arriving += irradiance;
         }
     }

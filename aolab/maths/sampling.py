@@ -87,7 +87,7 @@ def line(count: int, seed: int) -> np.ndarray:
     index = np.arange(count)
     shift = np.random.default_rng(seed).random(2)
     x = (index + (0.5 if seed == 0 else shift[0])) / count
-    angle = np.full(count, 2 * np.pi * shift[1] / 16)  # between the 16 angles of the pixels
+    angle = np.full(count, 2 * np.pi * shift[1])  # over many seeds, every pixel looks in all directions
     return _plane_samples(x**2, angle, 4 * x**3 / count)
 
 

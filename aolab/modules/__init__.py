@@ -17,10 +17,24 @@ from .s3ho import S3HO
 from .ssao import SSAO
 from .ssbn import SSBN
 from .ssdo import SSDO
+from .virtual_lights import EnvironmentVPL, InstantRadiosity
 from .voxel_view import VoxelView
 
 MODULES: dict[str, type[Module]] = {
-    module.name: module for module in (Unoccluded, SSAO, SSDO, HAO, S3HO, SSBN, AmbientTransfer, RotatedSSAO, RSM)
+    module.name: module
+    for module in (
+        Unoccluded,
+        SSAO,
+        SSDO,
+        HAO,
+        S3HO,
+        SSBN,
+        AmbientTransfer,
+        RotatedSSAO,
+        RSM,
+        EnvironmentVPL,
+        InstantRadiosity,
+    )
 }
 
 
@@ -30,7 +44,19 @@ def known_buffers() -> dict[str, Buffer]:
 
 
 # the same names, for editors; a test compares them
-ModuleName = Literal["none", "ssao", "ssdo", "hao", "s3ho", "ssbn", "ambient_transfer", "rotated_ssao", "rsm"]
+ModuleName = Literal[
+    "none",
+    "ssao",
+    "ssdo",
+    "hao",
+    "s3ho",
+    "ssbn",
+    "ambient_transfer",
+    "rotated_ssao",
+    "rsm",
+    "environment_vpl",
+    "instant_radiosity",
+]
 
 
 class _Callable(ModuleType):
@@ -42,6 +68,6 @@ class _Callable(ModuleType):
 sys.modules[__name__].__class__ = _Callable  # `aolab.modules` is this package, and has to be called like `aolab.scenes`
 
 __all__ = [
-    "HAO", "MODULES", "RSM", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "Module", "ModuleName", "RotatedSSAO",
-    "Unoccluded", "VoxelView", "find", "known_buffers",
+    "HAO", "MODULES", "RSM", "S3HO", "SSAO", "SSBN", "SSDO", "AmbientTransfer", "EnvironmentVPL", "InstantRadiosity",
+    "Module", "ModuleName", "RotatedSSAO", "Unoccluded", "VoxelView", "find", "known_buffers",
 ]  # fmt: skip

@@ -86,6 +86,16 @@ REFLECTED = _table(
         "The same at low resolution, interpolated (rgb), and whether enough neighbours agree (a).",
     ),
 )  # fmt: skip
+VIRTUAL = _table(
+    Buffer(
+        "environment_irradiance", 3, "RGBA32F", "irradiance", 0, "numbers",
+        "The irradiance of the environment's virtual lights, with their shadows.",
+    ),
+    Buffer(
+        "reflective_irradiance", 3, "RGBA32F", "irradiance", 0, "numbers",
+        "The irradiance of virtual lights on surfaces that lamps light, with their shadows.",
+    ),
+)  # fmt: skip
 
 # read by the lighting: a module's output of one of these names has this meaning
 CONTRACT = _table(

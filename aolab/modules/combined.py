@@ -6,9 +6,14 @@ from functools import lru_cache
 from ..errors import ParameterError, suggestion
 from .base import Module
 from .rsm import PAPER, with_rsm
+from .virtual_lights import DEBEVEC, KELLER, with_environment_vpl, with_instant_radiosity
 
 # the class with the part, and the part's paper
-PARTS: dict[str, tuple[Callable[[type[Module]], type[Module]], str]] = {"rsm": (with_rsm, PAPER)}
+PARTS: dict[str, tuple[Callable[[type[Module]], type[Module]], str]] = {
+    "rsm": (with_rsm, PAPER),
+    "environment_vpl": (with_environment_vpl, DEBEVEC),
+    "instant_radiosity": (with_instant_radiosity, KELLER),
+}
 
 
 def combined(name: str, module: type[Module], parts: Sequence[str]) -> type[Module]:

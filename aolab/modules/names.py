@@ -20,6 +20,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
         "light_spot_cos",
     ),
     "the reflective shadow maps": ("rsm_tiles",),
+    "the virtual lights": ("first_light", "light_count"),
     "the environment": ("irradiance_sh", "view_environment_sh"),
     "the samples": ("kernel", "rsm_kernel"),
     "the mesh": (

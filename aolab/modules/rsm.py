@@ -8,13 +8,14 @@ from pydantic import Field
 from ..maths.sampling import disc, line
 from ..scene.scene import Scene
 from .base import AUTO, Module
-from .buffers import LIT, REFLECTED
+from .buffers import REFLECTED
 from .estimate import Estimate
 from .filters import Unfiltered
 from .filters.base import Filter
 from .none import Unoccluded
 from .parameters import parameter
 from .passes import Pass
+from .reflected import bounce_of
 
 LOW_SCALE = 0.25  # of the bounce with `gather="low"`: a pixel in 16 gathers
 MOST_SAMPLES = 512  # vectors in a uniform array, beside the other uniforms, of the 1024 that drivers have
@@ -33,13 +34,6 @@ class Interpolated(Filter):
 
     name = "rsm_interpolated"
     upsampling = "rsm.interpolate.frag"
-
-
-def bounce_of(irradiance: str, before: Sequence[Pass | Estimate]) -> Pass:
-    """The pass that reflects the buffer `irradiance`, and adds the `indirect` light of the lighting steps `before`."""
-    adds = any("indirect" in step.outputs for step in before)
-    reads = {"irradiance": irradiance, "other": "indirect" if adds else irradiance}
-    return Pass("indirect", "shaded_bounce.frag", {"indirect": LIT["indirect"].format}, {"adds": adds}, reads)
 
 
 def with_rsm(base: type[Module]) -> type[Module]:
@@ -82,7 +76,7 @@ def with_rsm(base: type[Module]) -> type[Module]:
                 )  # fmt: skip
                 complete = Pass("rsm complete", "rsm.complete.frag", gather.outputs, constants)
                 steps = [Estimate([low], low.outputs, filter=Interpolated(), scale=LOW_SCALE), complete]
-            return [*before, *steps, bounce_of("rsm_irradiance", before)]
+            return [*before, *steps, bounce_of("rsm_irradiance", before, shaded=self.shaded)]
 
         def resolved(self, scene: Scene) -> Module:
             module = super().resolved(scene)

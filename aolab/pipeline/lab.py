@@ -21,6 +21,7 @@ from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
 from ..modules.buffers import BUFFERS, ON_DEMAND, REFLECTIVE
 from ..modules.occluders.base import Occluders
+from ..modules.virtual_lights import VirtualLights
 from ..scene import clipping
 from ..scene.camera import Camera
 from ..scene.environment import Environment
@@ -39,10 +40,11 @@ from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
-from .reflective import draw_reflective
+from .reflective import ReflectiveMaps, draw_reflective
 from .senders import senders
 from .shadows import ShadowMaps, ShadowSettings, draw_shadows
 from .state import FrameContext, SurfaceState
+from .virtual_lights import VirtualLightMaps, draw_virtual_lights
 
 DEFAULT_SIZE = (1280, 720)
 
@@ -62,6 +64,7 @@ class Lab:
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
+        self._virtual: dict[str, tuple[tuple[object, ...], VirtualLightMaps]] = {}
         self._sizes: set[Size] = set()
         self._waiting: WeakSet[Frame] = WeakSet()  # for their light
 
@@ -272,7 +275,21 @@ class Lab:
         reflective = None
         if sampled(frame) & REFLECTIVE.keys():
             reflective = draw_reflective(frame.rasterizer, lamps, int(module.numbers().get("rsm_resolution", MAP_SIZE)))
-        return Lights(lamps, scene.environment, tables, reflective)
+        steps = [step for step in module.lighting() if isinstance(step, VirtualLights)]
+        virtual = {step.name: self._virtual_lights(frame, step, reflective) for step in steps}
+        return Lights(lamps, scene.environment, tables, reflective, virtual)
+
+    def _virtual_lights(
+        self, frame: FrameContext, step: VirtualLights, reflective: ReflectiveMaps | None
+    ) -> VirtualLightMaps:
+        """Kept while the scene's parts are the same objects, as the shadow maps are."""
+        scene, module = frame.scene, frame.module
+        source = scene.environment if step.source == "environment" else (scene.lights, module.numbers())
+        key = (scene.instances, source, step, frame.seeds.start, self._programs.generation)
+        if step.name not in self._virtual or self._virtual[step.name][0] != key:
+            maps = draw_virtual_lights(frame.rasterizer, step, reflective, frame.seeds.start)
+            self._virtual[step.name] = key, maps
+        return self._virtual[step.name][1]
 
     def _lit(
         self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
@@ -324,7 +341,8 @@ def sampled(frame: FrameContext) -> set[str]:
     if _asks_for_occluders(frame):
         for text in frame.occluders.bindings().includes.values():
             names |= declared(text).samplers
-    return names
+    lights = [step.samples for step in frame.module.lighting() if isinstance(step, VirtualLights)]
+    return names.union(*lights)
 
 
 def surface_formats(frame: FrameContext) -> dict[str, str]:

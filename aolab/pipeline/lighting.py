@@ -1,7 +1,7 @@
 """From surfaces and an estimate to a picture: direct and ambient light, a bounce, and the sum, tone mapped."""
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import moderngl
@@ -12,6 +12,7 @@ from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.estimate import Estimate
 from ..modules.passes import Pass, reflect
+from ..modules.virtual_lights import VirtualLights
 from ..scene.environment import Environment
 from ..scene.lights import DirectionalLight, PointLight, SpotLight
 from ..scene.scene import Scene
@@ -21,6 +22,7 @@ from .pass_runner import Buffers, PassRunner
 from .reflective import ReflectiveMaps
 from .shadows import ShadowMaps
 from .state import SurfaceState
+from .virtual_lights import VirtualLightMaps, irradiance
 
 ToneMap = Literal["filmic", "linear"]
 
@@ -41,13 +43,15 @@ class Display:
 class Lights:
     """All that shines on a scene: its lamps with their shadow maps, its environment, and `tables` made of that.
 
-    `reflective` are the lamps' reflective shadow maps, for modules that sample them.
+    `reflective` are the lamps' reflective shadow maps, for modules that sample them, and `virtual` the virtual lights
+    of each such step, by its name.
     """
 
     lamps: Bindings
     sky: Environment
     tables: Buffers
     reflective: ReflectiveMaps | None = None
+    virtual: Mapping[str, VirtualLightMaps] = field(default_factory=dict)
 
     def seen_from(self, view: View) -> Sequence[Bindings]:
         """The lights, and the environment in world space and in the view's."""
@@ -108,6 +112,9 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
         given = [Bindings("the estimate", state.estimate), *shining, Bindings("the lighting", lit)]
         if isinstance(step, Estimate):
             lit |= estimate(state.at_scale(step.scale), step, given)
+        elif isinstance(step, VirtualLights):
+            known = [Bindings("the surfaces", state.large), frame.parameters]
+            lit |= irradiance(state, step, lights.virtual[step.name], known)
         else:
             known = [Bindings("the surfaces", state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
             lit |= steps(frame, [step], [*known, *_included(state, step)])

@@ -9,7 +9,7 @@ from ..gl.bindings import Bindings
 from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.occluders.base import Hidden
-from ..modules.passes import DIRECT, Pass
+from ..modules.passes import AMBIENT, DIRECT, Pass
 from .estimate import steps
 from .lighting import Lights
 from .pass_runner import Buffers
@@ -72,4 +72,6 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
 def _passes(module: Module, emits: bool) -> Sequence[Pass]:
     """The module's estimate, direct light, and the module's own ambient light; then the sum."""
     ambient = [step for step in module.lighting() if isinstance(step, Pass) and "ambient" in step.outputs]
+    if "environment_vpl" in module.parts:  # whose lights are added up for the camera's view alone
+        ambient = [replace(AMBIENT, constants={"occluded": False})]
     return [*module.estimate().passes, DIRECT, *ambient, _sender(emits)]

@@ -11,10 +11,11 @@ const int fill;             // samples on the segment; with 0, the shadow map al
 const float FILL_THICKNESS = 0.5;
 
 // Does nothing on the screen block the segment that the bias of shadow tile `tile` leaves out? `surfacePos` is the
-// receiver on its surface in view space, `worldPos` the same in world space; `viewToLight`: unit.
-bool isFilledOpen(Receiver receiver, int tile, vec3 surfacePos, vec3 worldPos, vec3 viewToLight, vec4 rayFromPixel) {
+// receiver on its surface in view space, `worldPos` the same in world space; `viewToLight`: unit, `away`: its distance.
+bool isFilledOpen(Receiver receiver, int tile, vec3 surfacePos, vec3 worldPos, vec3 viewToLight, float away,
+                  vec4 rayFromPixel) {
     if (fill == 0 || tile < 0) return true;
-    float reach = tileBias(tile, worldPos, dot(receiver.normal, viewToLight));
+    float reach = min(tileBias(tile, worldPos, dot(receiver.normal, viewToLight)), away);
     receiver.viewPos = surfacePos + receiver.normal * liftOff(0.0, reach, surfacePos, rayFromPixel);
     return isSegmentOpen(receiver, viewToLight, reach, 0.5, fill, FILL_THICKNESS * reach);
 }

@@ -18,6 +18,11 @@ vec3 towardsLightAt(int i, vec3 worldPos, out float arriving) {
     return towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i], worldPos, arriving);
 }
 
+// The distance of light `i`, scene units.
+float distanceOf(int i, vec3 worldPos) {
+    return light_kind[i] == DIRECTIONAL ? 3.0e38 : distance(light_position[i], worldPos);
+}
+
 // The shadow tile of light `i` that sees `worldPos`; -1 for a light without shadow map.
 int tileOf(int i, vec3 toLight) {
     int tile = light_tile[i];

@@ -29,7 +29,7 @@ void main() {
         all += irradiance;
         if (irradiance == vec3(0.0)) continue;
         vec3 viewToLight = mat3(view_from_world) * toLight;
-        if (isFilledOpen(receiver, tileOf(i, toLight), surfacePos, worldPos, viewToLight, ray_from_pixel)) {
+        if (isFilledOpen(receiver, tileOf(i, toLight), surfacePos, worldPos, viewToLight, distanceOf(i, worldPos), ray_from_pixel)) {
             arriving += irradiance;
         }
     }

@@ -21,6 +21,7 @@ from aolab import (
     Pass,
     PointLight,
     Scene,
+    SpotLight,
     paths,
 )
 from aolab.gl.texture import FORMATS
@@ -42,6 +43,9 @@ OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fi
 WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals")} | {
     ("rsm", "occluders"),
     ("rsm", "shaded"),
+    # virtual lights alone: no estimate of its own, and no occluders without `fill`
+    ("environment_vpl", "normals"),
+    ("environment_vpl", "filter"),
 }
 
 
@@ -102,7 +106,13 @@ def probe(wall) -> Scene:
         small_scenes.box((0.4, 0.0, -0.3), (0.6, 0.5, 0.2)),
         small_scenes.box((1.6, 1.0, 0.2), (1.9, 1.1, 0.9)),
         camera=wall.camera,
-        lights=(DirectionalLight((-1.0, -2.0, 0.5)), PointLight((2.0, 2.0, 1.0))),
+        lights=(
+            DirectionalLight((-1.0, -2.0, 0.5)),
+            PointLight((2.0, 2.0, 1.0)),
+            SpotLight(
+                (2.5, 2.0, 0.5), (-1.0, -0.6, -0.2), (5e5, 5e5, 5e5)
+            ),  # sends as much as the sun on 200 × 200 units
+        ),
         sky=Environment.sky(sun_direction=(1.0, 1.0, 0.0)),
     )
 

@@ -16,6 +16,7 @@ pytestmark = [
 ]
 
 HALF = 2e-3  # roundings to half floats
+LIGHTS = {"environment_vpl": 0.025}  # a sum over lights in place of the integral over a constant sky
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,7 @@ def furnace(wall) -> Scene:
 
 def physical(module: type[Module]) -> list[dict[str, Any]]:
     """The defaults, and one or two other choices, without patches, which make energy as printed."""
-    return [way for way in contexts(module, "") if way.get("senders") != "patches"]
+    return [way for way in contexts(module, "") if way.get("senders") != "patches" and not way.get("near_field")]
 
 
 def bounces(module: type[Module]) -> list[dict[str, Any]]:
@@ -50,7 +51,7 @@ def test_nothing_sends_more_than_there_is(lab, furnace, name):
         light = lab.render(furnace, name, **radius_of(name), **way)
         # this filter weighs by the value, so that it mixes the ambient light and the bounce with different weights
         more = 0.05 if way.get("filter") == "wendland" else 0
-        assert light["radiance"][light.mask].max() <= 1 + HALF + more, way
+        assert light["radiance"][light.mask].max() <= 1 + HALF + LIGHTS.get(name, 0) + more, way
         assert light["radiance"][light.mask].min() >= 0, way
 
 

@@ -138,6 +138,18 @@ def test_the_mean_of_four_by_four_pixels_is_nearer_to_the_sum(lab):
     assert filtered < 0.5 * raw
 
 
+def test_many_seeds_converge_without_a_filter(lab):
+    """A pixel's line turns with the seed, so that the pattern vanishes."""
+    scene = corner(LIGHTS["spot"])
+    settings = {"rsm_radius": 1.4, "rsm_resolution": 64, "size": SIZE, "filter": "none"}
+    frames = [lab.render(scene, "rsm", accumulate=count, **settings) for count in (1, 64)]
+    exact = all_pixel_lights(frames[0], scene)
+    one, many = (
+        np.sqrt(((frame["rsm_irradiance"] - exact)[frame.mask] ** 2).mean()) / exact.mean() for frame in frames
+    )
+    assert many < 0.3 * one
+
+
 @pytest.mark.parametrize("seed", [0, 3])
 def test_the_shares_of_a_disc_are_those_of_its_area(seed):
     kernel = disc(512, seed)

@@ -93,6 +93,32 @@ EDITS = {
         ("pipeline/wendland.frag", "wendland(abs(float(i))", "wendland(64.0 * abs(float(i))"),
     ),
     "noise of the screen": (("hao.frag", "floor(worldPos / (NOISE_CELL * radius))", "vec3(gl_FragCoord.xy, 0.0)"),),
+    # shadow maps and virtual lights
+    "no gap": (("lib/fill.glsl", "FILL_THICKNESS * reach", "0.0 * reach"),),
+    "only the near half of the gap": (("lib/segment.glsl", "/ float(samples))", "/ float(8 * samples))"),),
+    "no slope in the gap": (("lib/shadow_tiles.glsl", "sqrt(1.0 - cosine * cosine) / cosine", "0.02"),),
+    "lights from one side": (("virtual_lights.frag", "toLight = place;", "toLight = normalize(vec3(1.0, 0.5, 0.0));"),),
+    "virtual lights that send to all sides": (
+        ("virtual_lights.frag", "max(-dot(normal.xyz, toLight), 0.0)", "1.0"),
+        ("virtual_lights.frag", "light *= tileShadow(i, worldPos);", ""),
+    ),
+    "no near field": (("near_field.frag", "sum += occluderRadiance", "sum += 0.0 * occluderRadiance"),),
+    "all of the near field": (("near_field.frag", "max(1.0 - 1.0 / (geometry * vpl_clamp * vpl_clamp), 0.0)", "1.0"),),
+    "half of the near field": (("near_field.frag", "PI / float(directions)", "0.3 * PI / float(directions)"),),
+    # reflective shadow maps and the rotated kernel
+    "a map without the lamp's cone": (("rsm.map.frag", "* arriving * section", "* arriving * arriving * section"),),
+    "the depth of a ray": (("rsm.map.frag", "rsm_depth = -viewPos.z", "rsm_depth = length(viewPos)"),),
+    "pixel lights that send to all sides": (
+        ("lib/pixel_lights.glsl", "max(dot(texelFetch(rsm_normal, texel, 0).xyz, there), 0.0)", "sqrt(squared)"),
+    ),
+    "pixel lights of half the flux": (("lib/pixel_lights.glsl", "count / PI * cosines", "0.5 * count / PI * cosines"),),
+    "a sixteenth of the occlusion": (("rotated_ssao.frag", "strength * occlusion", "strength / 16.0 * occlusion"),),
+    "the mean of 2×2 pixels": (("pipeline/box4.frag", "i <= 2;", "i <= 0;"),),
+    "a tenth of the reach": (("rotated_ssao.frag", "float reachPx = radius", "float reachPx = 0.1 * radius"),),
+    "one angle for all pixels": (
+        ("lib/pixel_lights.glsl", "float(set) / 16.0", "0.1"),
+        ("rotated_ssao.frag", "float(receiver.set) / 16.0", "0.1"),
+    ),
 }
 
 SMALL = {
@@ -101,6 +127,14 @@ SMALL = {
     ("ssdo", "fig4"): {"frames": 22, "rays": 64},
     ("ssdo", "fig6"): {"size": (240, 135)},
     ("ssdo", "fig7"): {"size": (112, 63), "rays": 64},
+    ("ssdo", "fig9"): {"size": (240, 135)},
+    ("ssdo", "fig10"): {"size": (160, 90), "rays": 64},
+    ("ssdo", "fig11"): {"size": (160, 90), "rays": 64},
+    ("ssdo", "fig12"): {"size": (160, 90), "rays": 64, "lights": 128},
+    ("rsm", "fig1"): {"size": (128, 128)},
+    ("rsm", "fig5"): {"size": (96, 72), "rays": 64},
+    ("rsm", "fig7"): {"size": (160, 120), "rays": 32},
+    ("rsm", "fig9"): {"size": (160, 120), "frames": 32},
     ("ssdo", "fig13"): {"rays": 128},
     ("ssdo", "table1"): {"size": (160, 120), "repeats": 1},
     ("hao", "fig4"): {"rays": 64},

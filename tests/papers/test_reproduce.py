@@ -35,7 +35,20 @@ def test_a_figure_is_a_picture_and_its_numbers(gl, tmp_path):
 
 
 def test_without_a_figure_it_is_all_of_them():
-    assert list(figures("ssdo")) == ["fig1", "fig3", "fig4", "fig6", "fig7", "fig13", "fig14", "table1"]
+    assert list(figures("ssdo")) == [
+        "fig1",
+        "fig3",
+        "fig4",
+        "fig6",
+        "fig7",
+        "fig9",
+        "fig10",
+        "fig11",
+        "fig12",
+        "fig13",
+        "fig14",
+        "table1",
+    ]
     assert list(figures("ssdo", "fig7")) == ["fig7"]
     assert list(figures("s3ho")) == ["fig1", "fig3", "fig5", "fig6", "fig7", "fig8", "fig9", "table1"]
 
@@ -80,7 +93,7 @@ def test_the_shell_prints_claim_and_verdict(gl, monkeypatch, capsys, tmp_path):
 
 def test_the_shells_help_names_every_paper(monkeypatch, capsys):
     assert shell(monkeypatch, "--help") == 0
-    assert ", ".join(PAPERS) in capsys.readouterr().out
+    assert ", ".join(PAPERS) in " ".join(capsys.readouterr().out.split())
 
 
 def test_the_shell_refuses_in_one_line(monkeypatch, capsys, tmp_path):

@@ -40,11 +40,12 @@ def test_reserved_names_are_those_that_are_given(lab, boxes, monkeypatch):
         frame = given(lab, scene, monkeypatch, "ssdo", bounces=1, **settings)
         for owner, names in frame.items():
             found.setdefault(owner, set()).update(names)
-    for owner, names in given(lab, scene, monkeypatch, "rsm").items():
-        found.setdefault(owner, set()).update(names)
+    for module in ("rsm", "instant_radiosity"):
+        for owner, names in given(lab, scene, monkeypatch, module).items():
+            found.setdefault(owner, set()).update(names)
     owners = reserved()
     shared = {"the view", "the lights", "the environment", "the mesh", "the samples", "the small view"}
-    shared.add("the reflective shadow maps")
+    shared |= {"the reflective shadow maps", "the virtual lights"}
     for owner in shared | {kind.label() for kind in OCCLUDERS.values()}:
         for name in found.get(owner, ()):
             assert name in owners, (owner, name)

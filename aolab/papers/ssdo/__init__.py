@@ -1,7 +1,7 @@
 """SSDO: Ritschel, Grosch and Seidel 2009, "Approximating Dynamic Global Illumination in Image Space".
 
 Each function takes the size of a picture, or of the table's largest picture, and returns a `Figure`. Figures 2, 5 and 8
-are drawings; figures 9 to 12 belong to section 5, which the module does not implement.
+are drawings.
 """
 
 from collections.abc import Callable
@@ -12,6 +12,10 @@ from .fig3 import fig3
 from .fig4 import fig4
 from .fig6 import fig6
 from .fig7 import fig7
+from .fig9 import fig9
+from .fig10 import fig10
+from .fig11 import fig11
+from .fig12 import fig12
 from .fig13 import fig13
 from .fig14 import fig14
 from .table1 import table1
@@ -22,6 +26,10 @@ FIGURES: dict[str, Callable[..., Figure]] = {
     "fig4": fig4,
     "fig6": fig6,
     "fig7": fig7,
+    "fig9": fig9,
+    "fig10": fig10,
+    "fig11": fig11,
+    "fig12": fig12,
     "fig13": fig13,
     "fig14": fig14,
     "table1": table1,
