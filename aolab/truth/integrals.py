@@ -96,9 +96,16 @@ INTEGRANDS = {
 
 
 def integrate(
-    setting: Setting, points: Points, names: Collection[str], crosses: Iterable[Pair], randoms: Randoms
+    setting: Setting,
+    points: Points,
+    names: Collection[str],
+    crosses: Iterable[Pair],
+    randoms: Randoms,
+    stopped: Callable[[], bool] = lambda: False,
 ) -> Moments:
     """The moments of the integrals `names` over `setting.rays` rays a point, with the covariances of `crosses`.
+
+    When `stopped()` becomes true, the rest is left out, and the result is void.
 
     They are those of `INTEGRANDS`, and `light`, the lights' irradiance, which is exact.
     """
@@ -113,6 +120,8 @@ def integrate(
     cast = _Cast(setting, integrands)
     axes = frames(points.normal)
     for stratum in strata(setting.rays):
+        if stopped():
+            return moments
         pair = (cast(points, stratum.directions(axes, randoms["rays"], setting.covered), randoms) for _ in range(2))
         moments.add(*({name: one.evaluate(sample) for name, one in integrands.items()} for sample in pair))
     if "environment" in integrands and setting.sky.has_bright_part:

@@ -1,6 +1,7 @@
 """The reference's work: points in chunks, on all cores."""
 
 import os
+import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager
@@ -31,20 +32,29 @@ def trace(
     crosses: set[Pair] = {cross for name in wanted for cross in BUFFERS[name].crosses}
     moments = Moments(len(surface), integrals, crosses)
 
+    stop = threading.Event()
+
     def work(batch: int, where: np.ndarray, start: int) -> int:
         chunk = where[start : start + CHUNK]
-        part = integrate(setting, surface.points(chunk), list(integrals), crosses, randoms(seed, batch, start))
+        random = randoms(seed, batch, start)
+        part = integrate(setting, surface.points(chunk), list(integrals), crosses, random, stop.is_set)
         moments.put(chunk, part)
         return len(chunk)
 
     everywhere = np.arange(len(surface))
-    _run(lambda start: work(0, everywhere, start), len(surface), progress, "reference")
+    _run(lambda start: work(0, everywhere, start), len(surface), progress, "reference", stop)
     result: dict[str, np.ndarray] = {}
     if error is not None:
         batches = batches_needed(surface, moments, wanted, error)
         for batch in range(1, batches.max(initial=1)):
             where = np.flatnonzero(batches > batch)
-            _run(lambda start, b=batch, w=where: work(b, w, start), len(where), progress, f"reference, batch {batch}")
+            _run(
+                lambda start, b=batch, w=where: work(b, w, start),
+                len(where),
+                progress,
+                f"reference, batch {batch}",
+                stop,
+            )
         result["rays"] = (setting.rays * batches[:, None]).astype(np.float32)
     for name in wanted:
         result[name] = BUFFERS[name].value(moments, surface.albedo)
@@ -52,10 +62,10 @@ def trace(
     return result
 
 
-def _run(work: Callable[[int], int], total: int, progress: bool | None, what: str) -> None:
+def _run(work: Callable[[int], int], total: int, progress: bool | None, what: str, stop: threading.Event) -> None:
     """`work` from every CHUNK-th point on, a thread a core: Embree and NumPy let each other run.
 
-    Stops at the first error or Ctrl-C.
+    Stops at the first error or Ctrl-C: `stop` is set, and the work that is under way ends after its next rays.
     """
     with _bar(total, progress, what) as advance, ThreadPoolExecutor(_cores()) as pool:
         jobs: list[Future[int]] = [pool.submit(work, start) for start in range(0, total, CHUNK)]
@@ -63,6 +73,7 @@ def _run(work: Callable[[int], int], total: int, progress: bool | None, what: st
             for job in jobs:
                 advance(job.result())
         except BaseException:
+            stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
 
