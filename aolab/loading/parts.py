@@ -69,6 +69,7 @@ class Part:
     colors: np.ndarray | None = None
     material: Material = field(default_factory=Material)
     name: str = "mesh"
+    visibility: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -142,8 +143,8 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
             f"mesh '{name}': triangle {wrong} has indices {faces[wrong].tolist()}, "
             f"but there are {len(vertices)} vertices"
         )
-    normals, uv, colors = part.normals, part.uv, part.colors
-    for key, array in {"normals": normals, "uv": uv, "colors": colors}.items():
+    normals, uv, colors, visibility = part.normals, part.uv, part.colors, part.visibility
+    for key, array in {"normals": normals, "uv": uv, "colors": colors, "visibility": visibility}.items():
         if array is not None and len(array) != len(vertices):
             raise SceneError(f"mesh '{name}': {len(array)} {key} for {len(vertices)} vertices")
     used = np.zeros(len(vertices), bool)
@@ -151,14 +152,16 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
     if not used.all():
         number = np.cumsum(used) - 1
         faces, vertices = number[faces], vertices[used]
-        normals, uv, colors = (None if array is None else array[used] for array in (normals, uv, colors))
+        normals, uv, colors, visibility = (
+            None if array is None else array[used] for array in (normals, uv, colors, visibility)
+        )
     offset = np.zeros(3)
     with np.errstate(invalid="ignore", over="ignore"):  # not finite: `Mesh` refuses it
         low, high = vertices.min(axis=0).astype(np.float64), vertices.max(axis=0).astype(np.float64)
         centre = (low + high) / 2
         if np.linalg.norm(centre) > FAR * np.linalg.norm(high - low) / 2 and np.isfinite(centre).all():
             offset, vertices = centre, (vertices - centre).astype(np.float32)
-    return Mesh(vertices, faces, normals, uv, colors, part.material, name), offset
+    return Mesh(vertices, faces, normals, uv, colors, part.material, name, visibility=visibility), offset
 
 
 def _instance(mesh: Mesh, offset: np.ndarray, placed: Placed) -> Instance:
