@@ -25,13 +25,14 @@ from .texels import Texels, filled, texels_of
 INSET = 0.05  # of a triangle: its corners are looked at from so far inside, where no other surface touches
 AROUND = 4  # a vertex has about so many corners of triangles, which share its rays
 LEAST_RAYS = 16  # of a corner
+NAMES = ("position", "normal", "facet")
 
 
 class Spots(Surface):
     """Points on triangles with normals of the world, in place of a camera's pixels."""
 
-    def __init__(self, position: np.ndarray, normal: np.ndarray) -> None:
-        self.position, self.normal = position.astype(np.float32), normal.astype(np.float32)
+    def __init__(self, position: np.ndarray, normal: np.ndarray, facet: np.ndarray) -> None:
+        self.position, self.normal, self.facet = (one.astype(np.float32) for one in (position, normal, facet))
 
     def __len__(self) -> int:
         return len(self.position)
@@ -41,7 +42,7 @@ class Spots(Surface):
         return np.ones_like(self.position)
 
     def points(self, where: np.ndarray) -> Points:
-        return Points(self.position[where], self.normal[where])
+        return Points(self.position[where], self.normal[where], self.facet[where])
 
 
 def bake(
@@ -77,7 +78,7 @@ def bake(
 
     def visibility(spots: Sequence[Spots], count: int) -> list[np.ndarray]:
         """(n,) for each of `spots`."""
-        every = Spots(*(np.concatenate([getattr(one, name) for one in spots]) for name in ("position", "normal")))
+        every = Spots(*(np.concatenate([getattr(one, name) for one in spots]) for name in NAMES))
         setting = Setting(world, Sky(scene.environment), (), question, count)
         found = trace(setting, every, ["visibility"], seed, None, progress)["visibility"][:, 0].clip(0, 1)
         return np.split(found, np.cumsum([len(one) for one in spots])[:-1])
@@ -117,7 +118,7 @@ def _spots(instance: Instance, world: World, at: Texels) -> Spots:
     flat = _unit(np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]))
     flat *= np.where((flat * shading).sum(axis=1) < 0, -1, 1)[:, None]
     position = (corner * at.weights[..., None]).sum(axis=1) + flat * world.lift
-    return Spots(position, shading)
+    return Spots(position, shading, flat)
 
 
 def _by_vertex(mesh: Mesh, corners: np.ndarray) -> np.ndarray:

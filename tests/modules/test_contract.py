@@ -40,7 +40,7 @@ CHOICES = [choice for table in (OCCLUDERS, FILTERS) for choice in table.values()
 OF_CHOICES = [(choice, field) for choice in CHOICES for field in choice.model_fields]
 # `none` gives 1 everywhere: its shader includes no occluders, and there is nothing to filter
 WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals")} | {
-WITHOUT_EFFECT |= {("hao", "outside")}  # the probe has no baked visibility: see tests/baking
+    ("hao", "outside"),  # the probe has no baked visibility: see tests/baking
     ("rsm", "occluders"),
     ("rsm", "shaded"),
 }
