@@ -1,4 +1,5 @@
 from . import modules as modules
+from .baking import bake as bake
 from .errors import ContextError as ContextError
 from .errors import Error as Error
 from .errors import FileError as FileError

@@ -54,8 +54,8 @@ void main() {
     if (isBackground(centreZ)) return;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    float lift = lifted || isEdgeOn(normal, viewPos) ? liftOff(0.0, radius, viewPos, ray_from_pixel) : 0.0;
     vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    float lift = lifted || isEdgeOn(facet, viewPos) ? liftOff(0.0, radius, viewPos, ray_from_pixel) : 0.0;
     Receiver receiver = receiverAt(pixel, viewPos + facet * lift, normal, facet, texel_size);
 
     vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;

@@ -70,6 +70,7 @@ class Part:
     material: Material = field(default_factory=Material)
     name: str = "mesh"
     tangents: np.ndarray | None = None
+    visibility: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -143,8 +144,14 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
             f"mesh '{name}': triangle {wrong} has indices {faces[wrong].tolist()}, "
             f"but there are {len(vertices)} vertices"
         )
-    normals, uv, colors, tangents = part.normals, part.uv, part.colors, part.tangents
-    for key, array in {"normals": normals, "uv": uv, "colors": colors, "tangents": tangents}.items():
+    arrays = {
+        "normals": part.normals,
+        "uv": part.uv,
+        "colors": part.colors,
+        "tangents": part.tangents,
+        "visibility": part.visibility,
+    }
+    for key, array in arrays.items():
         if array is not None and len(array) != len(vertices):
             raise SceneError(f"mesh '{name}': {len(array)} {key} for {len(vertices)} vertices")
     used = np.zeros(len(vertices), bool)
@@ -152,16 +159,14 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
     if not used.all():
         number = np.cumsum(used) - 1
         faces, vertices = number[faces], vertices[used]
-        normals, uv, colors, tangents = (
-            None if array is None else array[used] for array in (normals, uv, colors, tangents)
-        )
+        arrays = {key: None if array is None else array[used] for key, array in arrays.items()}
     offset = np.zeros(3)
     with np.errstate(invalid="ignore", over="ignore"):  # not finite: `Mesh` refuses it
         low, high = vertices.min(axis=0).astype(np.float64), vertices.max(axis=0).astype(np.float64)
         centre = (low + high) / 2
         if np.linalg.norm(centre) > FAR * np.linalg.norm(high - low) / 2 and np.isfinite(centre).all():
             offset, vertices = centre, (vertices - centre).astype(np.float32)
-    return Mesh(vertices, faces, normals, uv, colors, part.material, name, tangents=tangents), offset
+    return Mesh(vertices, faces, material=part.material, name=name, **arrays), offset
 
 
 def _instance(mesh: Mesh, offset: np.ndarray, placed: Placed) -> Instance:

@@ -53,6 +53,7 @@ ON_DEMAND = _table(
         "reliefU", 4, "RGBA32F", "", 0, "numbers", "The gradient of u in view space; the height map's number from 1."
     ),
     Buffer("reliefV", 4, "RGBA32F", "", 0, "numbers", "The gradient of v in view space; the scale of the heights."),
+    Buffer("baked", 1, "R16F", "", 1, "share", "The visibility that `aolab.bake` has baked into the vertices; else 1."),
     Buffer("motion", 2, "RG32F", "pixels", 0, "numbers", "The way of the surface on the screen since the last frame."),
 )
 

@@ -1,9 +1,10 @@
 """Hybrid ambient occlusion: rays through a grid of voxels, for a small map that joint bilateral filtering brings up."""
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from ..maths.sampling import uniform_cone
 from .base import Directions, FilterByName, Module, OccludersByName, Radius, Steps
+from .occluders.region import WHOLE
 from .parameters import parameter
 from .passes import Pass
 from .question import Question
@@ -32,11 +33,23 @@ class HAO(Module):
     filter: FilterByName = parameter("wendland", "Noise removal: the paper's separable bilateral filter, or another.")
     scale: float = parameter(0.5, "Resolution of the estimate as a share of the image's.", ge=0.125, le=1)
 
+    outside: Literal["open", "baked"] = parameter(
+        "open",
+        "Visibility outside the region of the voxels: open, or that which `aolab.bake` has baked into the vertices.",
+    )
+
     def question(self) -> Question:
         return super().question().replace(falloff="wendland", spread=self.spread)
 
     def passes(self) -> list[Pass]:
-        return [Pass("hao", self.shader, self.outputs, {"lifted": self.occluders != "voxels"})]
+        constants = {"lifted": self.occluders != "voxels"}
+        if self.occluders != "voxels" or self.model_dump()["voxel_region"] == WHOLE:
+            return [Pass("hao", self.shader, self.outputs, constants)]
+        inside = Pass("hao", self.shader, {"inside": "R16F"}, constants, writes={"visibility": "inside"})
+        return [
+            inside,
+            Pass("hao outside", "hao.outside.frag", self.outputs, {"from_vertices": self.outside == "baked"}),
+        ]
 
     def samples(self, seed: int) -> dict[str, bytes]:
         return {"kernel": uniform_cone(self.directions, seed, self.spread).tobytes()}

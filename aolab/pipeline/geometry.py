@@ -28,6 +28,7 @@ MESH_UNIFORMS: dict[str, object] = {
     "relief_number": 0,
     "is_smooth": False,
 }
+ATTRIBUTES = "local_position", "local_normal", "texture_uv", "vertex_color", "vertex_visibility"
 MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1, "normal_texture": 2}  # of each mesh in turn, by their units
 
 
@@ -46,7 +47,7 @@ def kinds_of(scene: Scene) -> dict[str, Constant]:
 
 @dataclass
 class _GpuMesh:
-    attributes: moderngl.Buffer  # position 3f, normal 3f, uv 2f, colour 4f
+    attributes: moderngl.Buffer  # position 3f, normal 3f, uv 2f, colour 4f, baked visibility 1f
     indices: moderngl.Buffer
     instances: moderngl.Buffer
     placement: bytes
@@ -97,7 +98,8 @@ class Geometry:
         count = len(mesh.vertices)
         uv = np.zeros((count, 2), np.float32) if mesh.uv is None else mesh.uv
         colors = np.ones((count, 4), np.float32) if mesh.colors is None else mesh.colors
-        interleaved = np.concatenate([mesh.vertices, mesh.normals, uv, colors], axis=1, dtype=np.float32)
+        baked = np.ones((count, 1), np.float32) if mesh.visibility is None else mesh.visibility
+        interleaved = np.concatenate([mesh.vertices, mesh.normals, uv, colors, baked], axis=1, dtype=np.float32)
         gpu = _GpuMesh(gl.buffer(interleaved), gl.buffer(mesh.faces), gl.buffer(matrices), matrices)
         refuse_exhaustion(f"mesh '{mesh.name}' of {interleaved.nbytes / 1e6:.0f} MB")
         return gpu
@@ -106,7 +108,7 @@ class Geometry:
         key = program.gl.glo
         if key not in gpu.arrays:
             content = [
-                (gpu.attributes, "3f 3f 2f 4f", "local_position", "local_normal", "texture_uv", "vertex_color"),
+                (gpu.attributes, "3f 3f 2f 4f 1f", *ATTRIBUTES),
                 (gpu.instances, "16f/i", "world_from_local"),
             ]
             if "local_tangent" in program.gl:

@@ -75,6 +75,7 @@ class Material:
     radiance (linear RGB, from 0) that the surface sends besides, times `emission_texture`. `normal_texture` holds
     normals in tangent space, 2 × value - 1, by the MikkTSpace convention; `normal_scale` multiplies their x and y.
     `height` is a relief: the occluder kind `height` tests against it. Without a normal texture it bends the normals.
+    `occlusion_texture` holds baked visibility, in red; renders do not read it.
     Raises `SceneError` for a value out of range.
     """
 
@@ -90,6 +91,7 @@ class Material:
     normal_texture: Texture | None = None
     normal_scale: float = 1.0
     height: HeightMap | None = None
+    occlusion_texture: Texture | None = None
 
     def __post_init__(self) -> None:
         what = f"material '{self.name}'"
@@ -126,7 +128,8 @@ class Mesh:
     """Triangles in local space.
 
     `vertices` (V, 3) float32; `faces` (F, 3) uint32; `normals` (V, 3), made from the faces when None, smooth up to
-    `crease` degrees (which splits vertices along the creases); `uv` (V, 2), v up; `colors` (V, 4) linear RGBA float32.
+    `crease` degrees (which splits vertices along the creases); `uv` (V, 2), v up; `colors` (V, 4) linear RGBA float32;
+    `visibility` (V, 1), baked (`aolab.bake`).
     Degenerate triangles are dropped, and normals that cannot shade are made anew: each is counted in a `Notice`.
     `tangents` (V, 4): xyz the direction in which u grows, w the sign of the bitangent w · n × t; made by the MikkTSpace
     convention when None and the material has a normal texture.
@@ -143,6 +146,7 @@ class Mesh:
     name: str = "mesh"
     crease: float = CREASE_DEGREES
     tangents: np.ndarray | None = None
+    visibility: np.ndarray | None = None
 
     def __post_init__(self) -> None:
         what = f"mesh '{self.name}'"
@@ -161,8 +165,9 @@ class Mesh:
                 f"but there are {len(vertices)} vertices"
             )
         faces = self._drop_degenerate(vertices, faces.astype(np.uint32), what)
-        attributes: dict[str, np.ndarray | None] = dict.fromkeys(("normals", "uv", "colors", "tangents"))
-        for key, columns in {"normals": (3,), "uv": (2,), "colors": (4,), "tangents": (4,)}.items():
+        names = {"normals": (3,), "uv": (2,), "colors": (4,), "tangents": (4,), "visibility": (1,)}
+        attributes: dict[str, np.ndarray | None] = dict.fromkeys(names)
+        for key, columns in names.items():
             value = getattr(self, key)
             if value is None:
                 continue
@@ -181,13 +186,13 @@ class Mesh:
             vertices, faces, attributes["normals"], what
         )
         if source is not None:
-            for key in ("uv", "colors", "tangents"):
+            for key in ("uv", "colors", "tangents", "visibility"):
                 array = attributes[key]
                 attributes[key] = None if array is None else array[source]
         uv, tangents = attributes["uv"], attributes["tangents"]
         if tangents is None and self.material.normal_texture is not None and uv is not None:
             vertices, faces, source, attributes["tangents"] = mikktspace(vertices, faces, attributes["normals"], uv)
-            for key in ("normals", "uv", "colors"):
+            for key in ("normals", "uv", "colors", "visibility"):
                 array = attributes[key]
                 attributes[key] = None if array is None else array[source]
         for key, array in {"vertices": vertices, "faces": faces, **attributes}.items():

@@ -6,6 +6,7 @@ import typer
 
 from ..version import __version__
 from .animate import animate
+from .bake import bake
 from .bench import bench
 from .compare import compare
 from .doctor import doctor
@@ -18,7 +19,7 @@ from .sweep import sweep
 from .tune import tune
 from .view import view
 
-COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate, view)
+COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate, bake, view)
 
 app = typer.Typer(
     name="aolab",

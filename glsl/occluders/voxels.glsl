@@ -25,10 +25,10 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
     ivec3 voxel = ivec3(floor((voxel_from_view * vec4(samplePos, 1.0)).xyz));
     vec3 centre = vec3(voxel) + 0.5;
     occluder.viewPos = (view_from_voxel * vec4(centre, 1.0)).xyz;
-    vec3 edges = abs(receiver.normal * mat3(view_from_voxel));   // along the normal
+    vec3 edges = abs(receiver.facet * mat3(view_from_voxel));   // along the normal
     float height = edges.x + edges.y + edges.z;
     vec3 away = centre - (voxel_from_view * vec4(receiver.viewPos, 1.0)).xyz;
-    bool own = dot(receiver.normal, occluder.viewPos - receiver.viewPos) < ABOVE * height || dot(away, away) < AWAY * AWAY;
+    bool own = dot(receiver.facet, occluder.viewPos - receiver.viewPos) < ABOVE * height || dot(away, away) < AWAY * AWAY;
     return !own && isVoxelSet(voxel);
 }
 

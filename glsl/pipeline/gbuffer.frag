@@ -6,6 +6,7 @@
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
 //            surfaceFacetNormal  unit view-space normal of the triangle, on the side of surfaceNormal (RGBA16F, w 0)
+//            surfaceBaked    visibility that is baked into the vertices, 1 where none is (R16F)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 //            surfaceGeometricNormal  surfaceNormal without normal and height maps (RGBA16F)
 //            surfaceReliefU, surfaceReliefV  gradients of u and v in view space; w: the height map's number from 1, 0 for
@@ -17,6 +18,7 @@ const bool with_facetNormal;
 const bool with_uv;
 const bool with_tangent;
 const bool with_emission;
+const bool with_baked;
 const bool with_motion;
 const bool with_geometricNormal;
 const bool with_reliefU;
@@ -46,6 +48,7 @@ in vec2 uv;
 in vec4 color;
 in vec4 tangent;
 flat in float localScale;
+in float bakedVisibility;
 flat in float winding;
 
 out float surfaceViewZ;
@@ -55,6 +58,7 @@ out vec4 surfaceFacetNormal;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
 out vec4 surfaceEmission;
+out float surfaceBaked;
 out vec2 surfaceMotion;
 out vec4 surfaceGeometricNormal;
 out vec4 surfaceReliefU;
@@ -130,6 +134,7 @@ void main() {
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);
     if (with_emission) surfaceEmission = vec4(emission * texture(emission_texture, uv).rgb, 1.0);
+    if (with_baked) surfaceBaked = bakedVisibility;
     if (with_motion) {
         vec3 lastPos = (last_from_view * vec4(viewPos, 1.0)).xyz;
         surfaceMotion = has_last ? pixelAt(viewPos, pixel_from_ray) - pixelAt(lastPos, last_pixel_from_ray) : vec2(0.0);

@@ -1,12 +1,14 @@
 // The camera's view of an instance.
 // Inputs: local-space vertices, world_from_local a instance.
 // Outputs: view-space position, normal and tangent, uv, colour.
+// Inputs: local-space vertices, world_from_local a instance. Outputs: view-space position and normal, uv, colour, baked visibility.
 
 in vec3 local_position;
 in vec3 local_normal;
 in vec2 texture_uv;
 in vec4 vertex_color;
 in vec4 local_tangent;
+in float vertex_visibility;
 in mat4 world_from_local;
 
 const bool bent_normals;
@@ -20,6 +22,7 @@ out vec2 uv;
 out vec4 color;
 out vec4 tangent;          // view space, w the bitangent's sign; 0 without a map of normals
 flat out float localScale; // of the instance, so that heights grow with it
+out float bakedVisibility;
 flat out float winding;
 
 void main() {
@@ -32,6 +35,7 @@ void main() {
     viewNormal = mat3(view_from_world) * normalize(cofactor * local_normal);
     uv = texture_uv;
     color = vertex_color;
+    bakedVisibility = vertex_visibility;
     winding = sign(determinant(linear));
     tangent = vec4(0.0);
     localScale = 1.0;

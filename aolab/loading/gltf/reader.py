@@ -16,7 +16,7 @@ from .lights import lights_of, suited
 from .materials import Materials
 from .nodes import Poses, moved_at, nodes_in_scene, transform
 from .schema import Gltf, Primitive, checked, unread
-from .shapes import Shapes
+from .shapes import COLOR, OCCLUSION, Shapes
 
 INSTANCED = {"TRANSLATION": ("VEC3",), "ROTATION": ("VEC4",), "SCALE": ("VEC3",)}
 
@@ -77,13 +77,17 @@ class _Reader:
         except SceneError as error:
             self.left_out.append(str(error))
             return None
-        colors = shape.attributes.get("COLOR_0")
+        visibility = shape.attributes.get(OCCLUSION)
+        visibility = None if visibility is None else visibility.reshape(-1, 1)
+        colors = shape.attributes.get("COLOR_0" if visibility is None else COLOR)
         material, uv = self.materials.material(primitive.material, colored=colors is not None)
         if colors is not None and colors.shape[1] == 3:
             colors = np.column_stack([colors, np.ones(len(colors), np.float32)])
         tangents = shape.attributes.get("TANGENT") if material.normal_texture is not None else None
         coordinates = uv.of(shape.attributes)
-        return Part(shape.vertices, shape.faces, shape.normals, coordinates, colors, material, name, tangents)
+        return Part(
+            shape.vertices, shape.faces, shape.normals, coordinates, colors, material, name, tangents, visibility
+        )
 
     def _placements(self, node: int) -> list[tuple[np.ndarray, str]]:
         """Where the node's mesh stands: once, or once an instance (EXT_mesh_gpu_instancing)."""

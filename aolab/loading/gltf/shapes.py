@@ -12,6 +12,8 @@ from .schema import Gltf, Primitive
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 ALREADY = ("POSITION", "NORMAL")
+# written by `aolab.baking.write_glb`: the visibility of vertices, and their colour without it
+OCCLUSION, COLOR = "_OCCLUSION", "_COLOR"
 
 
 @dataclass
@@ -72,7 +74,7 @@ class Shapes:
                 return *arrays, TRIANGLES
         attributes = {}
         for attribute, accessor in primitive.attributes.items():
-            kinds = _KINDS.get(attribute.partition("_")[0])
+            kinds = _KINDS.get(attribute if attribute in (OCCLUSION, COLOR) else attribute.partition("_")[0])
             if kinds:
                 if attribute.startswith("JOINTS"):
                     attributes[attribute] = self._accessors.stored(accessor)
@@ -139,6 +141,8 @@ _KINDS = {
     "COLOR": ("VEC3", "VEC4"),
     "JOINTS": ("VEC4",),
     "WEIGHTS": ("VEC4",),
+    OCCLUSION: ("SCALAR",),
+    COLOR: ("VEC4",),
 }
 
 

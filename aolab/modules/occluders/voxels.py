@@ -38,7 +38,9 @@ class Voxels(OccluderKind):
     uniforms = ("voxel_from_view", "view_from_voxel", "region_from_view")
 
     voxels: int = parameter(256, "Voxels along each side of the grid; a multiple of 32.", ge=32, le=1024)
-    voxel_axes: Literal[1, 3] = parameter(1, "Axes that triangles are drawn along: one, as in the paper, or three.")
+    voxel_axes: Literal[1, 3] = parameter(
+        1, "Axes that triangles are drawn along: one, as in the paper, or three; an exact grid needs one."
+    )
     voxel_exact: bool = parameter(
         True,
         "Set every voxel that a triangle touches; else, as in the paper, the slices that it spans in the pixels whose "
@@ -68,7 +70,7 @@ class Voxels(OccluderKind):
 
     def _drawn(self, drawing: Drawing, view: View, grid: "Grid") -> Textures:
         """`voxelWords`, R32UI: tiles of N × N texels, 32 slices each, eight tiles in a row."""
-        axes = range(self.voxel_axes)
+        axes = range(self._axes)
         words = {f"words{axis}": self._words(drawing, view, grid, axis) for axis in axes}
         if len(words) == 1:
             return {"voxelWords": words["words0"]}
@@ -84,7 +86,7 @@ class Voxels(OccluderKind):
             constants={
                 "targets": self._targets,
                 "slices": self.voxels,
-                "dominant": self.voxel_axes == 3,
+                "dominant": self._axes == 3,
                 "voxel_exact": self.voxel_exact,
             },
             vertex="pipeline/voxelize.vert",
@@ -106,6 +108,10 @@ class Voxels(OccluderKind):
             {"slices": self.voxels, "targets": self._targets, "columns": self._columns},
             writes={"word": "voxelWords"},
         )
+
+    @property
+    def _axes(self) -> int:
+        return 1 if self.voxel_exact else self.voxel_axes
 
     @property
     def _targets(self) -> int:
