@@ -29,6 +29,9 @@ bool receiverHere(out Receiver receiver, float reach) {
     vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     viewPos += facet * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
+#ifdef RECEIVER_ON_RELIEF
+    if (isOnRelief(pixel)) facet = normal;   // a relief is no solid below its polygon, but below itself
+#endif
     receiver = receiverAt(pixel, viewPos, normal, facet, texel_size);
     return true;
 }

@@ -26,6 +26,12 @@ uniform sampler2D uv;
 uniform sampler2D reliefU;   // xyz the gradient of u, view space; w the map's number, 0 for none
 uniform sampler2D reliefV;   // xyz the gradient of v; w the scale of the heights, negative on a surface's back
 
+// Does the surface at this pixel have a height map? Then directions end at the relief, not at the polygon (lib/march.glsl).
+#define RECEIVER_ON_RELIEF
+bool isOnRelief(ivec2 pixel) {
+    return texelFetch(reliefU, pixel, 0).w > 0.0;
+}
+
 // A blocker: its position in view space, its normal if it is a relief's, and the place of its light in the textures.
 struct Occluder {
     vec3 viewPos;
