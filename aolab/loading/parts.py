@@ -166,7 +166,9 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
         centre = (low + high) / 2
         if np.linalg.norm(centre) > FAR * np.linalg.norm(high - low) / 2 and np.isfinite(centre).all():
             offset, vertices = centre, (vertices - centre).astype(np.float32)
-    return Mesh(vertices, faces, material=part.material, name=name, **arrays), offset
+    normals, uv, colors, tangents, visibility = arrays.values()
+    mesh = Mesh(vertices, faces, normals, uv, colors, part.material, name, tangents=tangents, visibility=visibility)
+    return mesh, offset
 
 
 def _instance(mesh: Mesh, offset: np.ndarray, placed: Placed) -> Instance:

@@ -134,8 +134,12 @@ def test_neighbours_are_measured_by_their_distance_off_the_tangent_plane(glsl, o
     normal, other = directions(60), RNG.normal(size=(60, 3)) - (0, 0, 8)
     ray = other[:, :2] if orthographic else other[:, :2] / -other[:, 2:]
     x = rows((normal[:, :2] * ray).sum(axis=1), normal[:, 2], other[:, 2])
-    along = glsl("lib/filter.glsl", "result.x = alongNormal(x.x, x.y, x.z);", x, orthographic=orthographic)
+    body = (
+        "result.xy = alongNormals(vec2(x.x, 2.0 * x.x), vec2(x.y, 2.0 * x.y), x.z);"  # a normal, and twice the normal
+    )
+    along = glsl("lib/filter.glsl", body, x, orthographic=orthographic)
     np.testing.assert_allclose(along[:, 0], (normal * other).sum(axis=1), rtol=1e-4, atol=1e-5)
+    np.testing.assert_allclose(along[:, 1], 2 * along[:, 0], rtol=1e-5)
 
 
 def test_the_tolerance_is_a_share_of_the_distance_or_of_the_pictures_height(glsl):
