@@ -10,7 +10,7 @@ from ..errors import ParameterError
 from ..extras import missing
 from .tone import shown, srgb
 
-SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share")  # in [0, 1], shown in grey
+SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share", "baked")  # in [0, 1], grey
 RADIANCE = (  # linear RGB
     "direct", "ambient", "indirect", "emission", "radiance", "irradiance", "bounce", "sender",
     "open_light", "all_light",
