@@ -15,7 +15,7 @@ RADIANCE = (  # linear RGB
     "direct", "ambient", "indirect", "emission", "radiance", "irradiance", "bounce", "sender",
     "open_light", "all_light",
 )  # fmt: skip
-DIRECTIONS = ("viewNormal", "facetNormal", "geometricNormal", "bent_normal", "tangent")  # components in [-1, 1]
+DIRECTIONS = ("viewNormal", "facetNormal", "geometricNormal", "bent_normal", "tangent", "rsm_normal")  # components in [-1, 1]
 SPREAD = ("rsm_position", "rsm_flux")  # three numbers of any size, shown as colours from the least to the largest
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
 

@@ -21,6 +21,7 @@ CASES = [
     ("ssdo", {"occluders": "layers", "bounces": 1}),
     ("ssbn", {}),
     ("ssbn", {"weighting": "uniform"}),
+    ("instant_radiosity", {}),
     ("s3ho", {}),
     ("s3ho", {"strength": 3.0, "indirect": True}),
 ]

@@ -12,7 +12,7 @@ from aolab.modules import MODULES
 from aolab.truth.hemisphere import frames
 from aolab.truth.points import Points
 
-DEPTHS = [name for name in MODULES if name not in ("none", "hao", "rsm")]  # hao: of voxels
+DEPTHS = [name for name, module in MODULES.items() if module.has_radius() and name != "hao"]  # hao: of voxels
 SIZE = (48, 36)
 
 

@@ -1,5 +1,7 @@
 """The function itself: its pixels, arguments, errors, seeds."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -98,7 +100,8 @@ def test_wrong_arguments_are_named_before_any_work(arguments, message):
         reference(wall_scene(), **arguments)
 
 
-def test_a_bar_is_shown_when_asked_for(capfd):
+def test_a_bar_is_shown_when_asked_for(capfd, monkeypatch):
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)  # tests of notebooks import it into this process
     reference(wall_scene(), size=SIZE, rays=2, cache=False, progress=True)
     assert "reference" in capfd.readouterr().err
     reference(wall_scene(), size=SIZE, rays=2, cache=False)
