@@ -13,9 +13,11 @@ from .tone import shown, srgb
 SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share", "baked")  # in [0, 1], grey
 RADIANCE = (  # linear RGB
     "direct", "ambient", "indirect", "emission", "radiance", "irradiance", "bounce", "sender",
-    "open_light", "all_light",
+    "open_light", "all_light", "rsm_irradiance", "rsm_interpolated", "environment_irradiance", "reflective_irradiance",
 )  # fmt: skip
-DIRECTIONS = ("viewNormal", "facetNormal", "geometricNormal", "bent_normal", "tangent", "rsm_normal")  # components in [-1, 1]
+DIRECTIONS = (  # components in [-1, 1]
+    "viewNormal", "facetNormal", "geometricNormal", "bent_normal", "tangent", "rsm_normal",
+)  # fmt: skip
 SPREAD = ("rsm_position", "rsm_flux")  # three numbers of any size, shown as colours from the least to the largest
 FIRST = ("image", "ambient", "visibility")  # the buffer of a frame that is shown first
 
