@@ -35,7 +35,7 @@ void main() {
     // the rays of a row, or column, differ in one component: by this much a pixel
     vec2 rayStep = vertical ? vec2(facet.y, normal.y) * ray_from_pixel.y : vec2(facet.x, normal.x) * ray_from_pixel.x;
     float weights = 1.0;
-#pragma unroll
+    #pragma unroll
     for (int i = -REACH; i <= REACH; ++i) {
         ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
         float otherZ = texelFetch(viewZ, other, 0).r;
