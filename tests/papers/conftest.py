@@ -26,12 +26,12 @@ EDITS = {
     "thin surfaces": (("occluders/depth.glsl", "- 0.5 * thickness) < 0.5", "- 0.05 * thickness) < 0.05"),),
     "solids without a back": (("lib/solids.glsl", "isBackground(solid.y);", "true;"),),
     "no further views": (("occluders/views.glsl", "k < views; ++k", "k < views - 4; ++k"),),
-    "no limit to the segment": (("ssdo.lights.frag", "min(reach, distance(", "max(reach, distance("),),
+    "no limit to the segment": (("ssdo.lights.frag", "min(reach, distanceOf(", "max(reach, distanceOf("),),
     # senders
     "no cosines": (("lib/senders.glsl", FORM_FACTOR, "1.0 / clamped"),),
     "senders of twice the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 2.0 * PI"),),
     "senders of half the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 0.5 * PI"),),
-    "back-facing senders": (("lib/senders.glsl", "facing > 0.0 && rising > 0.0", "rising > 0.0"),),
+    "back-facing senders": (("lib/senders.glsl", "facing > 0.0 && dot(", "dot("),),
     "grey senders": (("occluders/depth.glsl", SENDER, f"vec3(dot({SENDER}, vec3(1.0 / 3.0)))"),),
     "coefficients of three senders": (("s3ho.senders.frag", "= shClampedCosine(", "= 3.0 * shClampedCosine("),),
     # the environment
