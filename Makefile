@@ -10,7 +10,8 @@ WORKERS ?= $(shell n=$$(getconf _NPROCESSORS_ONLN); echo $$((n < 8 ? n : 8)))
 PYTEST = $(RUN) -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
 # what OpenGL can change, as on macOS and with old drivers
 GL33 := MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330
-GL33_TESTS := tests/gl tests/modules tests/pipeline
+GL33_TESTS := tests/gl tests/modules/test_contract.py \
+	$(patsubst %,tests/pipeline/test_%.py,filters joints lighting occluders reliefs shadows surfaces voxels)
 # what the papers' figures are made of, as one hash; `aolab/shell` is above `aolab/papers`, which cannot import it
 FIGURES := aolab glsl scenes tests/papers ':!aolab/shell' ':!*/figures.hash'
 FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
