@@ -12,6 +12,8 @@ PYTEST = $(RUN) -m pytest -n $(WORKERS) --dist loadscope --no-loadscope-reorder
 GL33 := MESA_GL_VERSION_OVERRIDE=3.3 MESA_GLSL_VERSION_OVERRIDE=330
 GL33_TESTS := tests/gl tests/modules/test_contract.py \
 	$(patsubst %,tests/pipeline/test_%.py,filters joints lighting occluders reliefs shadows surfaces voxels)
+LONG := long or wheel or browser
+
 # what the papers' figures are made of, as one hash; `aolab/shell` is above `aolab/papers`, which cannot import it
 FIGURES := aolab glsl scenes tests/papers ':!aolab/shell' ':!*/figures.hash'
 FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
@@ -21,12 +23,13 @@ FIGURES_HASH = git ls-files --cached --others --exclude-standard -- $(FIGURES) \
 MOVED := $(if $(filter $(shell pwd),$(shell cat $(RUNTIME) 2>/dev/null)),,moved)
 
 .NOTPARALLEL:
-.PHONY: moved help demo lint types full gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
+.PHONY: moved help demo lint types full long gl33 quick test fuzz figures figures-if-changed docs bench clean distclean
 
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png: 10 seconds after the set-up'
 	@echo 'make quick      format, lint, and the tests that are not slow: 4 minutes on two cores'
 	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 6 minutes on two cores'
+	@echo 'make long       the long tests: programs, notebooks, a browser, clusters, the installed wheel: 2 minutes'
 	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 5 minutes on two cores'
 	@echo 'make fuzz       load 800 damaged files of 16 kinds: 2 minutes'
 	@echo 'make docs       build the documentation into docs/_build/html: several minutes, as it runs the examples'
@@ -46,7 +49,10 @@ types: $(DEV)
 	PYRIGHT_PYTHON_IGNORE_WARNINGS=1 $(RUN) -m pyright
 
 full: $(DEV)
-	$(PYTEST) -m 'not (figures or fuzz)'
+	$(PYTEST) -m 'not (figures or fuzz or $(LONG))'
+
+long: $(DEV)
+	$(PYTEST) -m '($(LONG)) and not figures'
 
 gl33: $(DEV)
 	$(GL33) $(PYTEST) -m 'not slow' $(GL33_TESTS)

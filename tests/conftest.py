@@ -31,6 +31,11 @@ os.environ.setdefault("AOLAB_UNROLL", "0")
 
 CHECKOUT = Path(__file__).parents[1]
 PAPERS = CHECKOUT / "tests" / "papers"
+# files whose slow tests start programs, kernels or clusters, or draw for many seconds: `make long`
+LONG = (
+    "test_readme", "test_bake", "test_interrupts", "test_notebooks", "test_claims", "test_reproduce", "test_sweep",
+    "test_quality", "test_wheel", "test_jupyterlab",
+)  # fmt: skip
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
@@ -41,6 +46,8 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker("figures")
         if {"python", "mitsuba"} & {*getattr(item, "fixturenames", ())}:  # fixtures that start a process
             item.add_marker("slow")
+        if item.path.stem in LONG and item.get_closest_marker("slow"):
+            item.add_marker("long")
     # the last file to start is then a short one, and the workers end together; the wheel waits for the package index
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: (item.get_closest_marker("wheel") is None, -slow[item.path]))

@@ -32,6 +32,7 @@ def is_long(command: str) -> bool:
     return any(command.startswith(f".venv/bin/aolab {start}") for start in LONG)
 
 
+@pytest.mark.slow
 def test_the_python_lines_run(python, tmp_path):
     code = "\n".join(BLOCKS["python"]).replace("(1280, 720)", "(320, 180)")
     # a quarter of the size, and of the pixels in it

@@ -152,6 +152,7 @@ def test_another_suffix_is_refused(tmp_path):
         write_glb(of(floor(1.0)), tmp_path / "scene.obj")
 
 
+@pytest.mark.slow
 def test_outside_its_region_hao_has_the_baked_visibility(lab):
     """Inside the region rays decide; outside, the vertices' visibility, or 1 without the parameter."""
     stripes = [quad((a, 0, 3), (1, 0, 0), (0, 0, -6), name="floor") for a in range(-3, 3)]

@@ -105,6 +105,7 @@ def test_haos_figure_7_fails_if_triangles_cost_a_tenth_of_the_frame():
 # --- two of the figures here, too: the others, and more of their mutations, are run by `make figures`
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "edits"),
     [("fig6", ("solids without a back", "thin surfaces")), ("fig14", ("no cosines", "half the reach"))],

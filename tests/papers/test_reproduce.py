@@ -20,6 +20,7 @@ def written(folder, name):
     return size, json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
 
 
+@pytest.mark.slow
 def test_a_figure_is_a_picture_and_its_numbers(gl, tmp_path):
     folder = tmp_path / "made" / "if need be"
     drawn = dict(reproduce("ssdo", "fig14", folder, SMALL))
@@ -82,6 +83,7 @@ def shell(monkeypatch, *arguments) -> object:
     return ended.value.code or 0
 
 
+@pytest.mark.slow
 def test_the_shell_prints_claim_and_verdict(gl, monkeypatch, capsys, tmp_path):
     assert shell(monkeypatch, "ssdo", "fig14", "--size", "160x90", "-o", tmp_path) == 0
     printed = capsys.readouterr().out
