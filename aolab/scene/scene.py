@@ -176,7 +176,7 @@ class Scene:
         """How many triangles are drawn, instances counted."""
         return sum(len(instance.mesh.faces) for instance in self.instances)
 
-    @property
+    @cached_property
     def emits(self) -> bool:
         """Whether a surface sends light by itself."""
         return any(any(instance.mesh.material.emission) for instance in self.instances)
@@ -187,7 +187,7 @@ class Scene:
         maps = (instance.mesh.material.height for instance in self.instances)
         return tuple(dict.fromkeys(one for one in maps if one is not None))
 
-    @property
+    @cached_property
     def bends_normals(self) -> bool:
         """Whether a normal map or a height map changes the normals of some mesh."""
         return any(instance.mesh.material.bends_normals for instance in self.instances)
