@@ -28,8 +28,9 @@ void main() {
     direct = vec4(0.0);
     if (lights == 0 || isBackground(surfaceZ)) return;
 
-    vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 viewPos = litPoint(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), normal, ray_from_pixel);
+    vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;
     mat4 windowed = shWindow(transferAt(pixel, normal), SH_ZONAL * shLightLobe(shHanning(light_window)));
     vec3 irradiance = vec3(0.0);
     for (int i = 0; i < lights; ++i) {

@@ -23,7 +23,7 @@ void main() {
 
     vec2 way = light_samples[receiver.set];
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, texelFetch(viewZ, receiver.pixel, 0).r, ray_from_pixel);
-    vec3 worldPos = (world_from_view * vec4(surfacePos, 1.0)).xyz;
+    vec3 worldPos = (world_from_view * vec4(litPoint(surfacePos, receiver.normal, ray_from_pixel), 1.0)).xyz;
     vec3 worldNormal = mat3(world_from_view) * receiver.normal;
     vec3 all = vec3(0.0), arriving = vec3(0.0);
     for (int i = 0; i < lights; ++i) {

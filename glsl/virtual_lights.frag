@@ -45,8 +45,8 @@ void main() {
     if (isBackground(surfaceZ)) return;
 
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel);
-    vec3 worldPos = (world_from_view * vec4(surfacePos, 1.0)).xyz;
     Receiver receiver = receiverAt(pixel, surfacePos, texelFetch(viewNormal, pixel, 0).xyz, texel_size);
+    vec3 worldPos = (world_from_view * vec4(litPoint(surfacePos, receiver.normal, ray_from_pixel), 1.0)).xyz;
     vec3 worldNormal = mat3(world_from_view) * receiver.normal;
     vec3 sum = vec3(0.0);
     for (int i = first_light; i < first_light + batch; ++i) {

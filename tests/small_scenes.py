@@ -7,6 +7,10 @@ from aolab import Camera, Environment, Frame, Instance, Material, Mesh, Scene
 from aolab.scene.lights import Light
 from aolab.scene.view import View
 
+# visibility that is 1, on any driver: where a filter divides inexactly and half floats are truncated, each of two
+# passes loses a step of 2^-11
+OPEN = 1 - 2**-10
+
 WHITE = Material((1.0, 1.0, 1.0))
 SKY = Environment.constant((1.0, 1.0, 1.0))
 

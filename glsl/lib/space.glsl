@@ -26,6 +26,13 @@ vec3 sightTo(vec3 viewPos) {
     return orthographic ? vec3(0.0, 0.0, -1.0) : viewPos;
 }
 
+// The point at which light arrives on the surface at `viewPos`, for shadow maps: above the surface by more than the error
+// of its depth. A rasteriser moves vertices to a grid, mostly of 1/256 of a pixel (GL_SUBPIXEL_BITS = 8). That moves a
+// plane by at most 1/362 of a pixel's width.
+vec3 litPoint(vec3 viewPos, vec3 normal, vec4 rayFromPixel) {
+    return viewPos + normal * (orthographic ? 1.0 : -viewPos.z) * rayFromPixel.x / 256.0;
+}
+
 // True if no surface was drawn: the G-buffer is cleared to viewZ = -infinity.
 bool isBackground(float viewZ) {
     return viewZ < -3.0e38;

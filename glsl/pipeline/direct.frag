@@ -23,8 +23,9 @@ void main() {
     direct = vec4(0.0);
     if (lights == 0 || isBackground(surfaceZ)) return;
 
-    vec3 worldPos = (world_from_view * vec4(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), 1.0)).xyz;
-    vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, worldNormal = mat3(world_from_view) * normal;
+    vec3 viewPos = litPoint(viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), normal, ray_from_pixel);
+    vec3 worldPos = (world_from_view * vec4(viewPos, 1.0)).xyz;
     vec3 irradiance = vec3(0.0);
     for (int i = 0; i < lights; ++i) {
         vec3 toLight;

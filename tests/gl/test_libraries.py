@@ -54,7 +54,8 @@ def test_pixels_become_positions_and_positions_pixels(glsl, size, ortho):
     np.testing.assert_allclose(behind[:, 2], 2 * view_z, rtol=1e-6)
     np.testing.assert_allclose(view.pixels(behind), pixel, atol=1e-5 * max(size))
     sight = evaluate("sightTo(x.xyz)", rows(position))
-    np.testing.assert_allclose(np.cross(sight, behind - position), 0, atol=1e-4 * view_z.max() ** 2)
+    way, sight = (vectors / np.linalg.norm(vectors, axis=1)[:, None] for vectors in (behind - position, sight))
+    np.testing.assert_allclose(np.cross(sight, way), 0, atol=1e-4)
 
 
 def test_a_point_behind_the_eye_lands_far_off_the_screen(glsl):

@@ -636,7 +636,9 @@ def test_feature(name, lab, tmp_path):
     assert right.covered.sum() > 40, "the picture shows too little to be a test"
     np.testing.assert_array_equal(frame.mask[right.sure], right.covered[right.sure])
     inside = right.sure & right.covered
-    np.testing.assert_allclose(-frame["viewZ"][inside], right.depth[inside], rtol=1e-4)
+    np.testing.assert_allclose(
+        -frame["viewZ"][inside], right.depth[inside], rtol=1e-3
+    )  # of vertices on a grid of 1/256 of a pixel
     np.testing.assert_allclose(frame["albedo"][inside][:, :3], right.color[inside], atol=0.02)
 
 

@@ -51,10 +51,17 @@ WITHOUT_EFFECT = {("none", field) for field in ("occluders", "filter", "normals"
 
 
 def differ(one: Frame, other: Frame) -> bool:
+    """By more than drivers round: a shader that another setting compiled anew rounds otherwise on some."""
     return one.buffers != other.buffers or any(
-        one[name].shape != other[name].shape
-        or not np.array_equal(one[name], other[name], equal_nan=one[name].dtype.kind == "f")
-        for name in one.buffers
+        one[name].shape != other[name].shape or not close(one[name], other[name]) for name in one.buffers
+    )
+
+
+def close(one: np.ndarray, other: np.ndarray) -> bool:
+    """Two steps of a half float, or one level of an image."""
+    levels = one.dtype == np.uint8
+    return np.allclose(
+        one.astype(float), other, rtol=0 if levels else 2**-9, atol=1 if levels else 1e-6, equal_nan=True
     )
 
 
@@ -77,7 +84,7 @@ def test_an_unoccluded_plane_is_exactly_open(lab, plane, name):
     for occluders in typing.get_args(MODULES[name].model_fields["occluders"].annotation):
         for filter in ("none", "box4", "bilateral"):
             frame = lab.render(plane, name, occluders=occluders, filter=filter)
-            wrong = (frame["visibility"][frame.mask] != 1).mean()
+            wrong = (frame["visibility"][frame.mask] < small_scenes.OPEN).mean()
             # off the screen, a further view that sees the plane edge-on decides, and its pixels are wide there
             assert wrong <= (0.05 if occluders == "views" else 0), (occluders, filter)
 

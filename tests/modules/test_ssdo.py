@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from small_scenes import box, floor, of, quad, sphere, world_positions
+from small_scenes import OPEN, box, floor, of, quad, sphere, world_positions
 from small_scenes import wall as wall_scene
 
 import aolab
@@ -44,7 +44,7 @@ def test_an_open_plane_under_a_constant_sky_gives_exactly_albedo_times_radiance(
     sky = np.array((0.5, 1.0, 2.0))
     scene = of(floor(100, COLOUR), camera=Camera((0, 3, 6), (0, 0, 0)), sky=Environment.constant(tuple(sky)))
     frame = lab.render(scene, "ssdo", occluders=occluders, **settings)
-    assert (frame["visibility"][frame.mask] == 1).all()
+    assert (frame["visibility"][frame.mask] >= OPEN).all()
     expected = np.broadcast_to(np.array(COLOUR.base_color) * sky, frame["ambient"][frame.mask].shape)
     np.testing.assert_allclose(frame["ambient"][frame.mask], expected, rtol=HALF)
 

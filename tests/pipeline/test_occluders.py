@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_scenes
-from small_scenes import box, of, quad, world_positions
+from small_scenes import OPEN, box, of, quad, world_positions
 
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Material, PointLight
@@ -74,7 +74,7 @@ def test_a_plane_stays_exactly_open(lab, settings, scale):
             for radius in (0.5, 5.0):
                 scene = small_scenes.plane(camera, half)
                 frame = lab.render(scene, "ssao", radius=radius, scale=scale, bias=0.0, filter="none", **settings)
-                assert frame["visibility"][frame.mask].min() == 1, (name, half, radius)
+                assert frame["visibility"][frame.mask].min() >= OPEN, (name, half, radius)
 
 
 @pytest.mark.parametrize("kind", KINDS)

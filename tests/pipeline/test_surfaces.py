@@ -36,7 +36,8 @@ def test_a_facing_square_has_one_depth_one_normal_one_albedo(lab):
 def test_depth_of_a_floor_is_where_the_ray_meets_it(lab, plane):
     frame = lab.render(plane, "none", size=(33, 17))
     y = small_scenes.world_positions(frame, plane.camera)[..., 1][frame.mask]
-    np.testing.assert_allclose(y, 0, atol=2e-4)
+    pixel = 2 * 6.7 * np.tan(np.radians(plane.camera.fov / 2)) / 17  # its width at the plane's centre
+    np.testing.assert_allclose(y, 0, atol=pixel / 128)  # vertices lie on a grid of 1/256 of a pixel
     assert (np.diff(frame["viewZ"][:, 16][frame.mask[:, 16]]) > 0).all()  # the top row is the farthest
 
 
@@ -199,4 +200,4 @@ def test_scenes_tiny_and_enormous_look_the_same(lab):
         frame = render(lab, Instance(square(half=scale)), camera=camera)
         np.testing.assert_array_equal(frame.mask, reference.mask)
         np.testing.assert_allclose(frame["viewZ"][frame.mask], -4 * scale, rtol=1e-6)
-        np.testing.assert_array_equal(frame["viewNormal"], reference["viewNormal"])
+        np.testing.assert_allclose(frame["viewNormal"], reference["viewNormal"], atol=1 - small_scenes.OPEN)

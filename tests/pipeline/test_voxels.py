@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from scipy.ndimage import binary_dilation
-from small_scenes import box, floor, of, quad, sphere
+from small_scenes import OPEN, box, floor, of, quad, sphere
 
 import aolab
 from aolab import Camera
@@ -184,7 +184,7 @@ def test_a_grid_beyond_the_driver_is_refused_with_the_largest_that_fits():
 def test_a_region_without_meshes_is_noticed_and_open(lab, boxes):
     with pytest.warns(aolab.errors.Notice, match=r"voxel_region = .* holds no mesh"):
         frame = lab.render(boxes, "hao", voxel_region=((50, 50, 50), (60, 60, 60)))
-    assert np.nanmin(frame["visibility"]) == 1
+    assert np.nanmin(frame["visibility"]) >= OPEN
 
 
 def test_a_box_is_the_region_and_follows_an_object(lab):
@@ -195,7 +195,7 @@ def test_a_box_is_the_region_and_follows_an_object(lab):
     whole = lab.render(scene, "hao", **settings)["visibility"]
     left = lab.render(scene, "hao", voxel_region=((-3.0, -0.2, -1.5), (-0.4, 1.2, 1.5)), **settings)["visibility"]
     middle = whole.shape[1] // 2
-    assert np.nanmin(left[:, middle:]) == 1
+    assert np.nanmin(left[:, middle:]) >= OPEN
     np.testing.assert_allclose(np.nanmean(left[:, :middle]), np.nanmean(whole[:, :middle]), atol=0.01)
     moving = [
         aolab.Scene(

@@ -50,6 +50,16 @@ def cast(triangles, origins, directions):
     return distance, np.where(np.isfinite(distance), nearest, -1)
 
 
+def onto_triangle(position, normal, triangles):
+    """`position` (3,), moved to the plane of the nearest parallel triangle: GPUs draw vertices on a grid."""
+    a, b, c = triangles.swapaxes(0, 1)
+    theirs = np.cross(b - a, c - a)
+    theirs /= np.linalg.norm(theirs, axis=1, keepdims=True)
+    heights = ((a - position) * theirs).sum(axis=1)
+    nearest = np.where(np.abs(theirs @ normal) > 0.99, np.abs(heights), np.inf).argmin()
+    return position + heights[nearest] * theirs[nearest]
+
+
 def hemisphere(normals, random):
     """Uniform directions (n, 3) around `normals` (n, 3): a Gaussian vector, mirrored to the right side."""
     directions = random.normal(size=normals.shape)
@@ -110,6 +120,7 @@ def test_obscurance_and_transfer(measure):
     normals = (frame["viewNormal"] @ room.camera.view_from_world[:3, :3])[frame.mask].astype(np.float64)
     scores = {name: [] for name in names}
     for number, (position, normal) in enumerate(zip(world_positions(frame), normals, strict=True)):
+        position = onto_triangle(position, normal, triangles)
         fuzzy, closed, path = integrals(position, normal, triangles, albedo, OPENNESS[measure], random)
         ratio = fuzzy.mean() / (1 - closed.mean(axis=0))
         # of the ratio to first order: that of O + W C, over 1 - C
