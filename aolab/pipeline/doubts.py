@@ -51,8 +51,8 @@ def doubts(frame: Frame, outputs: Iterable[str]) -> Iterator[str]:
         elif name == "visibility" and (top := float(np.quantile(values, OPEN_SHARE))) < OPEN_LEAST:
             yield (
                 f"{module}: '{name}' is below {top:.2g} in {_percent(OPEN_SHARE)} of the surfaces' pixels; open "
-                "surfaces have 1. Likely causes: a hemisphere that is turned over (directions below the surface), open and "
-                "blocked exchanged, a surface that occludes itself (a larger bias), a radius of the size of the scene"
+                "surfaces have 1. Likely causes: a hemisphere that is turned over (directions below the surface), open "
+                "and blocked exchanged, a surface that occludes itself (a larger bias), a radius as large as the scene"
             )
 
 
