@@ -36,6 +36,9 @@ class Notice(UserWarning):
     """A warning: input was repaired or left out, and the result is still usable. The shell prints it as a note."""
 
 
+LISTED = 32  # names in a message
+
+
 def shorten(name: str, limit: int = 80) -> str:
     """A name from a file on one line, in printable characters; of a longer one than `limit`, both ends."""
     line = "".join(character if character.isprintable() else "�" for character in name)
@@ -45,10 +48,10 @@ def shorten(name: str, limit: int = 80) -> str:
 def suggestion(name: str, known: Iterable[str]) -> str:
     """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names.
 
-    Case does not count, and the same letters in another order are nearest: `ssoa` is `ssao` rather than `ssdo`.
+    Of more than `LISTED` names the nearest are listed. Case does not count, and the same letters in another order are
+    nearest: `ssoa` is `ssao` rather than `ssdo`.
     """
     names = sorted(known)
-    listed = ", ".join(names) if names else "none"
     written = name.lower()
     matcher = difflib.SequenceMatcher(b=written)
 
@@ -56,6 +59,9 @@ def suggestion(name: str, known: Iterable[str]) -> str:
         matcher.set_seq1(candidate.lower())
         return matcher.ratio() + (sorted(candidate.lower()) == sorted(written))
 
+    shown = names if len(names) <= LISTED else sorted(sorted(names, key=nearness)[-LISTED // 4 :])
+    more = f", and {len(names) - len(shown)} more" if len(shown) < len(names) else ""
+    listed = f"{', '.join(shown)}{more}" if names else "none"
     nearest = max(names, key=nearness, default="")
     if names and nearness(nearest) >= 0.6:
         return f"; did you mean '{nearest}'? (known: {listed})"

@@ -15,6 +15,7 @@ class Bindings:
 
     `textures` are read by samplers, `uniforms` are set before drawing, `constants` are compiled in. `includes` maps the
     name of an include to a file under glsl/ or to GLSL text. An owner may offer one value as uniform and as constant.
+    `words` are values that no shader can take, for messages.
     """
 
     owner: str
@@ -22,6 +23,7 @@ class Bindings:
     uniforms: Mapping[str, object] = field(default_factory=dict)
     constants: Mapping[str, Constant] = field(default_factory=dict)
     includes: Mapping[str, str] = field(default_factory=dict)
+    words: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -32,12 +34,13 @@ class Joined:
     uniforms: dict[str, object]
     constants: dict[str, Constant]
     includes: dict[str, str]
+    words: dict[str, object]
 
 
 def joined(bindings: Iterable[Bindings], place: str) -> Joined:
     """The bindings of all owners as one. Raises `ParameterError` where two owners give one name; `place` is named."""
     bindings = list(bindings)
-    result = Joined({}, {}, {}, {})
+    result = Joined({}, {}, {}, {}, {})
     for one in bindings:
         values = result.uniforms.keys() | result.constants.keys()
         if not (
@@ -51,6 +54,7 @@ def joined(bindings: Iterable[Bindings], place: str) -> Joined:
         result.constants.update(one.constants)
         result.textures.update(one.textures)
         result.includes.update(one.includes)
+        result.words.update(one.words)
     return result
 
 

@@ -1,15 +1,20 @@
 """Programs: compiled once for each set of constants, kept, and compiled anew when a file of theirs changes."""
 
 import os
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+import re
+import struct
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from types import MappingProxyType
 
 import moderngl
 
 from ..errors import ShaderError, suggestion
 from . import context, raw
+from .report import told
 from .source import Constant, Declared, Source, assemble, declared
+from .words import declaration
 
 FULLSCREEN = "pipeline/fullscreen.vert"
 MAX_SAMPLERS = 16  # OpenGL 3.3 guarantees this many to a fragment shader; some drivers grant more, macOS does not
@@ -44,17 +49,27 @@ class Program:
                 f"{self.name} reads {count} textures; OpenGL 3.3 guarantees {MAX_SAMPLERS}: {', '.join(self.samplers)}"
             )
 
-    def set(self, values: Mapping[str, object]) -> None:
-        """Set every uniform that is not a sampler from `values`. Raises `ShaderError` for a uniform without a value."""
+    def set(self, values: Mapping[str, object], words: Mapping[str, object] = MappingProxyType({})) -> None:
+        """Set every uniform that is not a sampler from `values`. Raises `ShaderError` for a uniform without a value, or
+        of another type than its value. `words` are values that no shader can take.
+        """
         for name, uniform in self._values.items():
+            if name in words:
+                raise ShaderError(
+                    f"{self.name}: uniform '{name}' is {words[name]!r} in Python, which no shader can take; give the "
+                    f"pass a constant in its place, as in Pass(..., constants={{'is_{words[name]}': True}})"
+                )
             if name not in values:
                 raise ShaderError(f"{self.name}: uniform '{name}' is given by nothing{suggestion(name, values)}")
             value = values[name]
-            if isinstance(value, bytes):
-                # GLSL drops the unused tail of an array; so do we
-                uniform.write(value[: uniform.array_length * uniform.dimension * 4])
-            else:
-                uniform.value = value
+            try:
+                if isinstance(value, bytes):
+                    # GLSL drops the unused tail of an array; so do we
+                    uniform.write(value[: uniform.array_length * uniform.dimension * 4])
+                else:
+                    uniform.value = value
+            except (struct.error, TypeError, ValueError, moderngl.Error):
+                raise ShaderError(f"{self.name}: {_mismatch(name, uniform, value)}") from None
 
     def changed(self) -> bool:
         """Whether a file of this program was written since it was compiled."""
@@ -63,6 +78,23 @@ class Program:
 
 # GL_SAMPLER_: 2D, 3D, CUBE, 2D_SHADOW, 2D_ARRAY, 2D_ARRAY_SHADOW, and INT_ and UNSIGNED_INT_ forms of 2D and 2D_ARRAY
 _SAMPLERS = {0x8B5E, 0x8B5F, 0x8B60, 0x8B62, 0x8DC1, 0x8DC4, 0x8DCA, 0x8DCF, 0x8DD2, 0x8DD7}
+
+
+# GL_FLOAT, GL_FLOAT_VEC2, ...
+_TYPES = {0x1406: "float", 0x8B50: "vec2", 0x8B51: "vec3", 0x8B52: "vec4", 0x1404: "int", 0x8B53: "ivec2"}
+_TYPES |= {0x8B54: "ivec3", 0x8B55: "ivec4", 0x1405: "uint", 0x8B56: "bool", 0x8B5B: "mat3", 0x8B5C: "mat4"}
+
+
+def _mismatch(name: str, uniform: moderngl.Uniform, value: object) -> str:
+    """The message about a uniform whose type in the shader is not that of its value in Python."""
+    glsl = _TYPES.get(uniform.gl_type, f"of {uniform.dimension} numbers")  # pyright: ignore[reportAttributeAccessIssue]
+    if isinstance(value, bytes):
+        wanted, given = uniform.array_length * uniform.dimension, len(value) // 4
+        return f"uniform '{name}' is {glsl}[{uniform.array_length}], {wanted} numbers, but {given} are given"
+    return (
+        f"uniform '{name}' is {glsl} in the shader, and {type(value).__name__} in Python ({value!r}); for this value "
+        f"declare {declaration(name, value)}"
+    )
 
 
 def _is_sampler(uniform: moderngl.Uniform) -> bool:
@@ -81,7 +113,8 @@ class Request:
     """The sources of a program. `constants` are on offer: a shader takes those that it declares.
 
     `outputs` are the `out` variables that are drawn, in the order of their locations; None checks none of them.
-    `optional` are `out` variables that the shader may have besides.
+    `optional` are `out` variables that the shader may have besides. Messages about GLSL text have `<name>` as its
+    file; `offered` maps the names that a shader may declare to their declarations.
     """
 
     vertex: str
@@ -91,6 +124,8 @@ class Request:
     outputs: tuple[str, ...] | None
     optional: frozenset[str]
     geometry: str = ""
+    name: str = "inline"
+    offered: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def sources(self) -> tuple[object, ...]:
@@ -119,18 +154,21 @@ class Programs:
         outputs: Sequence[str] | None = None,
         optional: Collection[str] = (),
         geometry: str = "",
+        name: str = "inline",
+        offered: Callable[[], Mapping[str, str]] = dict,
     ) -> Program:
         """The program for these sources, compiled when first asked for. Raises `ShaderError`.
 
         `outputs` names the `out` variables that are drawn; each must be written, and no other may be there unless it is
-        `optional`. More samplers than OpenGL 3.3 guarantees are an error on every driver.
+        `optional`. More samplers than OpenGL 3.3 guarantees are an error on every driver. `name` stands for GLSL text
+        in messages; `offered` returns the declarations of all names that the shader may declare.
         """
         wanted = None if outputs is None else tuple(outputs)
-        request = Request(vertex, fragment, constants or {}, aliases or {}, wanted, frozenset(optional), geometry)
-        if request.sources not in self._declared:
-            return self._keep(_compile(request))
-        key = self._key(request)
-        return self._programs[key] if key in self._programs else self._keep(_compile(request))
+        others = wanted, frozenset(optional), geometry, name
+        request = Request(vertex, fragment, constants or {}, aliases or {}, *others)
+        if request.sources in self._declared and (key := self._key(request)) in self._programs:
+            return self._programs[key]
+        return self._keep(_compile(replace(request, offered=offered())))
 
     def declared(self, shader: str | Path) -> Declared:
         """The includes and samplers of a shader, before anything is compiled."""
@@ -177,7 +215,7 @@ class Programs:
 
 def _compile(request: Request) -> Program:
     vertex = assemble(request.vertex, request.constants, request.aliases)
-    fragment = assemble(request.fragment, request.constants, request.aliases)
+    fragment = assemble(request.fragment, request.constants, request.aliases, request.name)
     geometry = assemble(request.geometry, request.constants, request.aliases) if request.geometry else None
     files = vertex.files | fragment.files | (geometry.files if geometry else set())
     stamps = {path: _stamp(path) for path in files}
@@ -191,7 +229,7 @@ def _compile(request: Request) -> Program:
         )
     except moderngl.Error as error:
         stages = {"vertex_shader": vertex, "geometry_shader": geometry or vertex}
-        raise ShaderError(_explain(str(error), stages, fragment)) from None
+        raise ShaderError(_explained(str(error), stages, fragment, request.offered)) from None
     constants = vertex.constants | fragment.constants | (geometry.constants if geometry else set())
     return Program(linked, fragment.name, request, stamps, constants, _locations(linked, request, fragment))
 
@@ -205,7 +243,8 @@ def _locations(linked: moderngl.Program, request: Request, fragment: Source) -> 
     for name, location in found.items():
         if location < 0:
             known = name.partition("[")[0] in declared
-            reason = "is never written" if known else f"is missing{suggestion(name, declared)}"
+            missing = f"is missing{suggestion(name, declared)}; a shader declares each output: out float visibility;"
+            reason = _unwritten(name, fragment) if known else missing
             raise ShaderError(f"{fragment.name}: the 'out' variable '{name}' {reason}")
     drawn = {name.partition("[")[0] for name in found}
     for name in declared:
@@ -219,18 +258,18 @@ def _locations(linked: moderngl.Program, request: Request, fragment: Source) -> 
     return found
 
 
-def _explain(message: str, stages: Mapping[str, Source], fragment: Source) -> str:
-    """moderngl's report, told in our files and lines."""
+def _unwritten(name: str, fragment: Source) -> str:
+    """The reason why the driver removed an `out` variable that the shader declares."""
+    if re.search(rf"\b{name.partition('[')[0]}\b[^;=]*=(?!=)", fragment.text):
+        return (
+            "is never written: the driver removed its assignment. Likely causes: an endless loop before it (does the "
+            "loop's variable change?), a return before it"
+        )
+    return f"is never written: assign it in main(), as in {name} = 1.0;"
+
+
+def _explained(message: str, stages: Mapping[str, Source], fragment: Source, offered: Mapping[str, str]) -> str:
+    """moderngl's report, in our files and lines."""
     head = message.splitlines()[:4]
     stage = next((source for name, source in stages.items() if name in head), fragment)
-    report = [line for line in message.splitlines() if line.strip() and set(line.strip()) != {"="}]
-    titles = (
-        "GLSL Compiler failed",
-        "GLSL Linker failed",
-        "vertex_shader",
-        "geometry_shader",
-        "fragment_shader",
-        "Program",
-    )
-    detail = "\n".join(line for line in report if line.strip() not in titles)
-    return f"{stage.name} does not compile:\n{stage.locate(detail)}"
+    return f"{stage.name} does not compile:\n{told(message, stage, offered)}"

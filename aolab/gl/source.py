@@ -41,30 +41,17 @@ class Source:
         declared = ",".join(_OUT.findall(_COMMENT.sub("", self.text)))
         return re.findall(r"(\w+)\s*(?:\[[^\]]*\])?\s*(?:,|$)", declared)
 
-    def locate(self, message: str) -> str:
-        """A driver's error message with `glsl/FILE:LINE` and the line itself in place of the driver's own count."""
-
-        def ours(match: re.Match[str]) -> str:
-            number = int(match["line"] or match["nvidia"])
-            if not 1 <= number <= len(self.lines):
-                return match[0]
-            file, line = self.lines[number - 1]
-            return f"{file}:{line}: {match['rest'].strip()}\n    {self.text.splitlines()[number - 1].strip()}"
-
-        # Mesa "0:12(5): error: ...", Apple and AMD "ERROR: 0:12: ...", NVIDIA "0(12) : error ..."
-        pattern = re.compile(
-            r"^(?:ERROR:\s*)?\d+(?::(?P<line>\d+)(?:\(\d+\))?|\((?P<nvidia>\d+)\))\s*:\s*(?P<rest>.*)$"
-        )
-        found = [pattern.sub(ours, line) for line in message.splitlines()]
-        return "\n".join(line for line in found if line.strip())
-
 
 def assemble(
-    shader: str | Path, constants: Mapping[str, Constant] | None = None, aliases: Mapping[str, str] | None = None
+    shader: str | Path,
+    constants: Mapping[str, Constant] | None = None,
+    aliases: Mapping[str, str] | None = None,
+    name: str = "inline",
 ) -> Source:
-    """Resolve a shader's includes and fill in its constants.
+    """Resolve a shader's includes and fill in its constants. Messages about GLSL text have `<name>` as its file.
 
-    `shader` is a file under glsl/ ("ssao.frag"), the path of another file, or GLSL text (anything with a line break).
+    `shader` is a file under glsl/ ("ssao.frag"), the path of another file, or GLSL text (anything with a line break
+    or a brace).
     An include of a file outside of glsl/ is looked up beside that file first, then under glsl/. A line
     `const int directions;` is a hole that `constants["directions"]` fills. Loops under `#pragma unroll` are unrolled
     (aolab/gl/unroll.py). `aliases` maps an include's name to the
@@ -74,18 +61,18 @@ def assemble(
     builder = _Builder(dict(constants or {}), dict(aliases or {}))
     builder.emit(VERSION, "glsl", 0)
     if is_text(shader):
-        name = "<inline>"
-        builder.add(name, str(shader), [])
+        file = f"<{name}>"
+        builder.add(file, str(shader), [])
     else:
-        name = builder.include(shader, [], f"shader '{shader}'")
+        file = builder.include(shader, [], f"shader '{shader}'")
     made = unrolled(list(zip(builder.text, builder.lines, strict=True)))
     text, lines = "\n".join(line for line, _ in made) + "\n", [place for _, place in made]
-    return Source(name, text, lines, builder.files, builder.used)
+    return Source(file, text, lines, builder.files, builder.used)
 
 
 def is_text(shader: str | Path) -> bool:
     """Whether `shader` is GLSL text; otherwise it is the name of a file under glsl/, or the path of another file."""
-    return isinstance(shader, str) and "\n" in shader
+    return isinstance(shader, str) and ("\n" in shader or "{" in shader)
 
 
 @dataclass(frozen=True)

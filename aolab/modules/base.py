@@ -289,7 +289,14 @@ class Module(Parameters):
         return "radius" in cls.model_fields
 
     def passes(self) -> list[Pass]:
-        """The estimate's passes, in order; their outputs are filtered and upsampled afterwards."""
+        """The estimate's passes, in order; their outputs are filtered and upsampled afterwards.
+
+        Raises `ParameterError` for a module without a shader.
+        """
+        if not self.shader:
+            raise ParameterError(
+                f"{self.label()}: no shader; set `shader` to GLSL text or a file, or override passes()"
+            )
         return [Pass(self.name or type(self).__name__, self.shader, self.outputs)]
 
     def estimate(self) -> Estimate:

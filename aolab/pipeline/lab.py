@@ -30,7 +30,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from ..version import __version__
 from . import lighting, surfaces
-from .doubts import doubts
+from .doubts import doubts, is_own
 from .environments import EnvironmentMaps
 from .estimate import estimate
 from .frame import Frame, Later, lend, noting
@@ -183,7 +183,7 @@ class Lab:
             warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
         elif reason := clipping.reason_of_cut(scene, view):
             warnings.warn(reason, Notice, stacklevel=2)
-        if not type(module).__module__.startswith("aolab."):  # a module of the user's own
+        if is_own(module) or self._programs.generation:  # a module of the user's own, or a shader that was edited
             for doubt in doubts(result, module.outputs):
                 warnings.warn(doubt, Notice, stacklevel=2)
         return result

@@ -2,6 +2,7 @@
 
 import weakref
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from types import MappingProxyType
 
 import moderngl
@@ -12,6 +13,8 @@ from ..gl.bindings import Bindings, Joined, joined
 from ..gl.program import FULLSCREEN, Program, Programs
 from ..gl.texture import Depth, Kept, Pool, Size
 from ..gl.timer import Timer
+from ..gl.words import declaration
+from ..modules.buffers import ON_DEMAND
 from ..modules.passes import Pass
 from ..scene.view import Region
 
@@ -84,7 +87,7 @@ class PassRunner:
         given = joined((*bindings, *_constants(step)), f"pass '{step.name}'")
         program = self.program(step, given)
         outputs = targets or self.targets(step, size)
-        program.set(given.uniforms)
+        program.set(given.uniforms, given.words)
         self.bind(program, given.textures, step.reads)
         framebuffer = self.framebuffer(program, step, outputs)
         framebuffer.viewport = region or (0, 0, *size)
@@ -96,7 +99,15 @@ class PassRunner:
     def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:
         """The pass's program, with these constants and includes."""
         return self.programs.get(
-            step.shader, given.constants, given.includes, vertex, list(step.outs.values()), step.writes, geometry
+            step.shader,
+            given.constants,
+            given.includes,
+            vertex,
+            list(step.outs.values()),
+            step.writes,
+            geometry,
+            step.name,
+            partial(declarations, given),
         )
 
     def framebuffer(
@@ -126,7 +137,9 @@ class PassRunner:
             border = None
             if name not in units:
                 if buffer not in textures:
-                    raise ShaderError(f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, textures)}")
+                    raise ShaderError(
+                        f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, {*textures, *ON_DEMAND})}"
+                    )
                 textures[buffer].use(unit)
                 border = textures[buffer].extra
             if border is None:
@@ -147,6 +160,15 @@ class PassRunner:
         if program.fullscreen is None:
             program.fullscreen = context.get().vertex_array(program.gl, [])
         return program.fullscreen
+
+
+def declarations(given: Joined) -> dict[str, str]:
+    """{name: GLSL declaration} of all that a shader may declare: values, the textures at hand, those on demand."""
+    values = {name: declaration(name, value) for name, value in {**given.uniforms, **given.constants}.items()}
+    on_demand = {name: f"uniform sampler2D {name};" for name in ON_DEMAND}
+    kinds = {"u": "usampler2D", "i": "isampler2D"}
+    textures = {name: f"uniform {kinds.get(of.dtype[0], 'sampler2D')} {name};" for name, of in given.textures.items()}
+    return {**values, **on_demand, **textures}
 
 
 def _constants(step: Pass) -> list[Bindings]:

@@ -58,13 +58,14 @@ class FrameContext:
     def parameters(self) -> Bindings:
         """The module's numbers, as uniforms and as constants, and all that its measure gives."""
         numbers, owner = self.module.numbers(), f"the parameters of {self.module.label()}"
-        own = Bindings(owner, uniforms=numbers, constants=numbers)
+        words = {name: value for name, value in self.module.model_dump().items() if isinstance(value, str)}
+        own = Bindings(owner, uniforms=numbers, constants=numbers, words=words)
         if "measure" not in self.module.choices:
             return own
         measure = self.module.chosen("measure")
         assert isinstance(measure, Measure)
         both = joined([own, measure.bindings()], owner)
-        return Bindings(owner, both.textures, both.uniforms, both.constants, both.includes)
+        return Bindings(owner, both.textures, both.uniforms, both.constants, both.includes, both.words)
 
     def samples(self, seed: int) -> Bindings:
         """The sample set of one seed."""

@@ -4,6 +4,7 @@ import pytest
 
 from aolab import paths
 from aolab.errors import ShaderError
+from aolab.gl.report import told
 from aolab.gl.source import assemble
 
 
@@ -192,7 +193,7 @@ def test_a_drivers_message_is_told_in_our_files_and_lines(folder, driver):
     folder("lib/a.glsl", "// a\n\nfloat y = x;\n")
     # line 1 is the version, 2 the head, 3 to 5 lib/a.glsl
     message = MESSAGES[driver].replace("4", "5", 1)
-    located = assemble("main.frag").locate(message)
+    located = told(message, assemble("main.frag"), {})
     assert located.startswith("glsl/lib/a.glsl:3: ")
     assert "x" in located.splitlines()[0].partition(":3: ")[2]
     assert located.splitlines()[1] == "    float y = x;"
@@ -203,10 +204,10 @@ def test_lines_that_are_none_of_ours_stay_as_they_are(folder):
     folder("main.frag", "void main() {}\n")
     source = assemble("main.frag")
     for message in ("0:99(1): error: beyond", "error: linking failed", "0(0) : warning"):
-        assert source.locate(message) == message
+        assert told(message, source, {}) == message
 
 
 def test_several_messages_are_each_located(folder):
     folder("main.frag", "a\nb\n")
-    located = assemble("main.frag").locate("0:2(1): error: one\n\n0:3(1): warning: two\n")
-    assert located == "glsl/main.frag:1: error: one\n    a\nglsl/main.frag:2: warning: two\n    b"
+    located = told("0:2(1): error: one\n\n0:3(1): error: two\n", assemble("main.frag"), {})
+    assert located == "glsl/main.frag:1: error: one\n    a\nglsl/main.frag:2: error: two\n    b"
