@@ -36,6 +36,8 @@ EXTRAS = {
     "draco": Extra("DracoPy", "DracoPy", "glTF files that Draco compressed"),
     "notebook": Extra("anywidget", "anywidget", "a widget in a notebook"),
     "jupyter": Extra("IPython", "jupyterlab", "frames that are shown in notebooks"),
+    "pyvista": Extra("pyvista", "pyvista", "a race against VTK's ambient occlusion"),
+    "open3d": Extra("open3d", "open3d", "a race against Open3D's ambient occlusion"),
     "pyrender": Extra("pyrender", "scikit-robot-pyrender", "pyrender scenes as input"),
 }
 

@@ -10,6 +10,7 @@ from . import options
 
 if TYPE_CHECKING:
     from ..studies.curve import Curve
+    from ..studies.peers import Race
 
 
 def bench(
@@ -26,23 +27,37 @@ def bench(
         str | None,
         Option(metavar="SCENE", help="Measure error against time: every module over a range of its settings."),
     ] = None,
+    peers: Annotated[
+        str | None,
+        Option(metavar="SCENE", help="Race the ambient occlusion of VTK and Open3D, where they are installed."),
+    ] = None,
+    radius: Annotated[
+        float | None, Option(metavar="UNITS", help="With --peers: the radius, in scene units. Default: by the scene.")
+    ] = None,
     rays: options.Rays = 256,
     output: Annotated[
-        Path, Option("-o", "--output", metavar="FILE.png", help="With --quality: the picture; .json beside it.")
-    ] = Path("quality.png"),
+        Path,
+        Option("-o", "--output", metavar="FILE.png", help="With --quality and --peers: the picture; .json beside it."),
+    ] = Path("bench.png"),
     as_json: options.Json = False,
 ) -> None:
     """Measure the time of every pass of every module.
 
     Prints milliseconds: medians over repeated frames, and interquartile ranges. --quality traces rays and measures
-    hundreds of settings: it takes tens of minutes without a GPU, and a bar shows the time that is left.
+    hundreds of settings: it takes tens of minutes without a GPU, and a bar shows the time that is left. --peers draws
+    the same scene with other renderers, in turns, and compares all with the same rays: a minute or two.
     """
     from ..studies import bench as measure
     from . import text
 
-    if quality is not None:
-        curve = measured_quality(quality, output, size=text.size(size), rays=rays, frames=frames)
-        print(json.dumps(curve.to_dict(), indent=2) if as_json else f"{curve.table()}\n{output}")
+    if quality is not None or peers is not None:
+        how = {"size": text.size(size), "rays": rays, "frames": frames}
+        result = (
+            measured_race(peers, output, radius=radius, **how)
+            if quality is None
+            else measured_quality(quality, output, **how)
+        )
+        print(json.dumps(result.to_dict(), indent=2) if as_json else f"{result.table()}\n{output}")
         return
     if scaling:
         result = measure.scaling(text.size(size), frames)
@@ -54,20 +69,41 @@ def bench(
 
 
 def measured_quality(scene: str, output: Path, **how: Any) -> "Curve":
-    """Measure, draw `output`, and write the data beside it as JSON. Files and libraries are checked before the work."""
-    from ..extras import need
-    from ..output import check_writable, replacing
+    """Measure the curve of error against time, draw `output`, and write the data beside it as JSON."""
     from ..studies.quality import curve
-    from .files import check_picture, write_json
 
-    data = output.with_suffix(".json")
-    check_picture(output)
-    check_writable(data)
-    need("pictures")
-    from ..studies.quality_picture import draw
-
+    _check(output)
     measured = curve(scene, **how)
-    with replacing(output) as file:
-        draw(measured).savefig(file, format="png")
-    write_json(data, measured.to_dict())
+    _write(measured, measured.to_dict(), output)
     return measured
+
+
+def measured_race(scene: str | None, output: Path, **how: Any) -> "Race":
+    """Race the other renderers that are installed, draw `output`, and write the data beside it as JSON."""
+    from ..studies.peers import race
+
+    _check(output)
+    measured = race(scene, **how)
+    _write(measured.curve, measured.to_dict(), output)
+    return measured
+
+
+def _check(output: Path) -> None:
+    """Raise for files that cannot be written and libraries that are missing, before the work."""
+    from ..extras import need
+    from ..output import check_writable
+    from .files import check_picture
+
+    check_picture(output)
+    check_writable(output.with_suffix(".json"))
+    need("pictures")
+
+
+def _write(curve: "Curve", data: dict[str, Any], output: Path) -> None:
+    from ..output import replacing
+    from ..studies.quality_picture import draw
+    from .files import write_json
+
+    with replacing(output) as file:
+        draw(curve).savefig(file, format="png")
+    write_json(output.with_suffix(".json"), data)
