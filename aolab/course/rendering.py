@@ -1,10 +1,12 @@
 """Rendering with the shaders of a student, of the solution or of a mistake: the pictures that checks compare."""
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from ..errors import Notice
 from ..modules import Module
 from ..modules.estimate import Estimate
 from ..modules.filters.base import Filter
@@ -68,7 +70,9 @@ class Renders:
     def frame(self, shot: Shot, texts: Texts) -> Frame:
         """A frame with these shaders. Raises `ShaderError` for one that does not compile."""
         module = self.exercise.module.replace(**shot.changes)
-        return self.lab.render(shot.scene, with_shaders(module, self.exercise, texts), **shot.arguments)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", Notice)  # a check has sentences of its own about NaN and ranges
+            return self.lab.render(shot.scene, with_shaders(module, self.exercise, texts), **shot.arguments)
 
 
 _last: list[Renders] = []
