@@ -1,4 +1,4 @@
-"""The folders of the shaders and scenes: from an environment variable, else the installed package or the checkout."""
+"""The folders of shaders, scenes and exercises: from an environment variable, else the package or the checkout."""
 
 import os
 from functools import cache
@@ -14,6 +14,7 @@ def _find(folder: str, variable: str) -> Path:
     candidates = [
         _PACKAGE / folder,
         _PACKAGE.parent / folder,
+        _PACKAGE.parent / "examples" / folder,
     ]  # the installed package; the checkout, which has no aolab/glsl
     if override := os.environ.get(variable):
         candidates = [Path(override).resolve()]
@@ -31,3 +32,8 @@ def glsl() -> Path:
 def scenes() -> Path:
     """The folder of the scenes; `AOLAB_SCENES` overrides it."""
     return _find("scenes", "AOLAB_SCENES")
+
+
+def exercises() -> Path:
+    """The folder of the exercises; `AOLAB_EXERCISES` overrides it."""
+    return _find("exercises", "AOLAB_EXERCISES")

@@ -10,7 +10,7 @@ import aolab
 
 PACKAGE = Path(aolab.__file__).parent
 # a folder imports from itself, from the folders below it in this list, and from the files at the top
-ORDER = ["shell", "papers", "notebook", "studies", "measures", "baking", "truth", "pipeline", "modules", "gl",
+ORDER = ["shell", "papers", "notebook", "course", "studies", "measures", "baking", "truth", "pipeline", "modules", "gl",
          "loading", "scene", "pictures", "maths", ""]  # fmt: skip
 FILES = {str(path.relative_to(PACKAGE)): path for path in sorted(PACKAGE.rglob("*.py"))}
 

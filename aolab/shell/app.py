@@ -10,6 +10,7 @@ from .bake import bake
 from .bench import bench
 from .compare import compare
 from .doctor import doctor
+from .exercise import exercise
 from .modules import modules
 from .reference import reference
 from .render import render
@@ -46,3 +47,4 @@ def _options(
 
 for command in COMMANDS:
     app.command()(command)
+app.add_typer(exercise)

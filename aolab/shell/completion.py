@@ -34,5 +34,12 @@ def papers(incomplete: str) -> list[str]:
     return _starting(incomplete, list(PAPERS))
 
 
+def exercises(incomplete: str) -> list[str]:
+    """Exercises by name."""
+    from ..course.exercise import names
+
+    return _starting(incomplete, names())
+
+
 def _starting(incomplete: str, names: list[str]) -> list[str]:
     return [name for name in names if name.startswith(incomplete)]

@@ -107,8 +107,14 @@ class ShellHelp(Markdown):
 
     def text(self) -> str:
         group: Any = typer.main.get_command(shell)  # with the options for completion
-        pages = [f"### {name}\n\n{_help(command, f'aolab {name}')}" for name, command in group.commands.items()]
+        pages = [f"### {name}\n\n{_help_of(command, f'aolab {name}')}" for name, command in group.commands.items()]
         return "\n\n".join([_help(group, "aolab"), *pages])
+
+
+def _help_of(command: Any, name: str) -> str:
+    """The help of a command, and of its own commands, if it has some."""
+    own = getattr(command, "commands", {})
+    return "\n\n".join([_help(command, name), *(_help_of(one, f"{name} {word}") for word, one in own.items())])
 
 
 def _help(command: Any, name: str) -> str:
