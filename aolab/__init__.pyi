@@ -32,6 +32,7 @@ from .notebook.microscope import Microscope as Microscope
 from .notebook.microscope import microscope as microscope
 from .notebook.picker import glyph_picker as glyph_picker
 from .notebook.reading import glyph as glyph
+from .pictures.flipbook import Flipbook as Flipbook
 from .pictures.sheet import contact_sheet as contact_sheet
 from .pictures.sheet import gray as gray
 from .pictures.sheet import show as show

@@ -1,6 +1,7 @@
 """The documentation and the code agree. The pages are read as text: no Sphinx, no OpenGL."""
 
 import re
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,30 @@ def test_pages_quote_each_modules_shader() -> None:
         assert any(
             page == f"modules/{name}.md" and file.endswith(f"glsl/{module.shader}") for page, _, file, _ in QUOTES
         )
+
+
+LESSONS = [page for page in PAGES if page.startswith("learn/") and page != "learn/index.md"]
+
+
+@pytest.mark.parametrize("page", LESSONS)
+def test_a_lesson_has_a_picture_to_change_an_equation_a_line_of_a_shader_and_a_hidden_answer(page: str) -> None:
+    text = PAGES[page]
+    assert any("aolab.Flipbook(" in cell for cell in CELL.findall(text)), f"docs/{page}: no picture with a slider"
+    assert re.search(r"^\$\$ .*\$\$ \(learn-[\w-]+\)$", text, re.MULTILINE), f"docs/{page}: no numbered equation"
+    assert any(quoting == page and "/glsl/" in file for quoting, _, file, _ in QUOTES), f"docs/{page}: no shader line"
+    _, _, question = text.partition("\n## Question\n")
+    assert re.search(r"\?\n\n:::\{dropdown\} Answer\n", question), f"docs/{page}: no question with a hidden answer"
+    assert f"<{Path(page).stem}.ipynb>`" in text, f"docs/{page}: the notebook of another page"
+
+
+def test_ten_lessons_are_numbered_in_the_order_of_the_index_and_each_leads_to_the_next() -> None:
+    listed = re.findall(r"^\d+\. \[(.+)\]\((\w+\.md)\)", PAGES["learn/index.md"], re.MULTILINE)
+    assert sorted(f"learn/{file}" for _, file in listed) == sorted(LESSONS)
+    assert len(listed) == 10
+    for number, (title, file) in enumerate(listed, 1):
+        assert f"\n# {number} · {title}\n" in PAGES[f"learn/{file}"]
+    for (_, file), (title, following) in pairwise(listed):
+        assert f"Next: [{title}]({following})" in PAGES[f"learn/{file}"]
 
 
 def test_the_python_reference_names_all_that_is_public_and_no_more() -> None:

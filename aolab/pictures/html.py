@@ -48,10 +48,12 @@ def smaller(picture: "Image.Image", width: int = WIDEST) -> "Image.Image":
     return picture.resize((width, round(picture.height * width / picture.width)), Image.Resampling.LANCZOS)
 
 
-def img(picture: "Image.Image | np.ndarray | bytes", alt: str, style: str = "max-width: 100%") -> str:
-    """An <img> with the picture in it, as PNG. `picture` may be the bytes of a PNG file."""
+def img(
+    picture: "Image.Image | np.ndarray | bytes", alt: str, style: str = "max-width: 100%", kind: str = "png"
+) -> str:
+    """An <img> with the picture in it, as PNG. `picture` may be the bytes of a file of another `kind`."""
     data = base64.b64encode(picture if isinstance(picture, bytes) else png(picture)).decode()
-    return f'<img alt="{escape(alt)}" style="{style}" src="data:image/png;base64,{data}">'
+    return f'<img alt="{escape(alt)}" style="{style}" src="data:image/{kind};base64,{data}">'
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
