@@ -86,7 +86,7 @@ def race(
     if not isinstance(frames, int) or frames < 3:
         raise ParameterError(f"frames = {frames!r}: a median with its spread needs 3 or more")
     scene, lab = load(scene), Lab(size)
-    chosen = SSAO().resolved(scene).radius if radius is None else radius
+    chosen = float(SSAO().resolved(scene).radius if radius is None else radius)
     ours = [module.replace(radius=chosen, falloff=0.0) for module in OURS]
     camera = lab.render(scene, ours[0]).camera
     peers = _peers(scene, camera, size, chosen)

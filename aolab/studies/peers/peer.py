@@ -23,6 +23,7 @@ class Peer(Protocol):
 
     def visibility(self) -> np.ndarray:
         """(H, W) float: 1 is open."""
+        ...
 
 
 class PeerClass(Protocol):

@@ -12,7 +12,7 @@ import numpy as np
 from ...errors import ParameterError
 from .peer import PeerClass
 
-STARTS = 120  # seconds in which a peer must have drawn its first frames
+STARTS = 300  # seconds in which a peer must have drawn its first frames
 DRAWS = 60
 
 
