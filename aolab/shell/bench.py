@@ -9,6 +9,8 @@ from typer import Option
 from . import options
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
     from ..studies.curve import Curve
     from ..studies.peers import Race
 
@@ -18,7 +20,8 @@ def bench(
     scene: Annotated[str, Option(help="The scene that is drawn.")] = "boxes",
     frames: Annotated[int, Option(metavar="N", min=3, help="Frames for each measurement.")] = 15,
     scaling: Annotated[
-        bool, Option("--scaling", help="Measure how the time grows with pixels, taps and triangles.")
+        bool,
+        Option("--scaling", help="Measure how the time grows with pixels, taps, triangles, lights, ..."),
     ] = False,
     start: Annotated[
         bool, Option("--start", help="Measure the import, and the time from process start to a saved picture.")
@@ -37,7 +40,12 @@ def bench(
     rays: options.Rays = 256,
     output: Annotated[
         Path,
-        Option("-o", "--output", metavar="FILE.png", help="With --quality and --peers: the picture; .json beside it."),
+        Option(
+            "-o",
+            "--output",
+            metavar="FILE.png",
+            help="With --quality, --scaling, --peers: the picture; .json beside it.",
+        ),
     ] = Path("bench.png"),
     as_json: options.Json = False,
 ) -> None:
@@ -47,7 +55,6 @@ def bench(
     hundreds of settings: it takes tens of minutes without a GPU, and a bar shows the time that is left. --peers draws
     the same scene with other renderers, in turns, and compares all with the same rays: a minute or two.
     """
-    from ..studies import bench as measure
     from . import text
 
     if quality is not None or peers is not None:
@@ -60,12 +67,13 @@ def bench(
         print(json.dumps(result.to_dict(), indent=2) if as_json else f"{result.table()}\n{output}")
         return
     if scaling:
-        result = measure.scaling(text.size(size), frames)
-    elif start:
-        result = measure.start_up(frames)
-    else:
-        result = measure.frames(scene, text.size(size), frames)
-    print(json.dumps(result, indent=2) if as_json else measure.table(result))
+        found, lines = measured_scaling(output, text.size(size), frames)
+        print(json.dumps(found, indent=2) if as_json else f"{lines}\n{output}")
+        return
+    from ..studies import bench as measure
+
+    times = measure.start_up(frames) if start else measure.frames(scene, text.size(size), frames)
+    print(json.dumps(times, indent=2) if as_json else measure.table(times))
 
 
 def measured_quality(scene: str, output: Path, **how: Any) -> "Curve":
@@ -74,7 +82,7 @@ def measured_quality(scene: str, output: Path, **how: Any) -> "Curve":
 
     _check(output)
     measured = curve(scene, **how)
-    _write(measured, measured.to_dict(), output)
+    _write_curve(measured, measured.to_dict(), output)
     return measured
 
 
@@ -84,8 +92,20 @@ def measured_race(scene: str | None, output: Path, **how: Any) -> "Race":
 
     _check(output)
     measured = race(scene, **how)
-    _write(measured.curve, measured.to_dict(), output)
+    _write_curve(measured.curve, measured.to_dict(), output)
     return measured
+
+
+def measured_scaling(output: Path, size: tuple[int, int], frames: int) -> tuple[dict[str, Any], str]:
+    """Measure the growth of a frame's time, draw `output`, and write the data beside it. The data, and its table."""
+    from ..studies.scaling import scaling, table
+
+    _check(output)
+    from ..studies.scaling_picture import draw
+
+    measured = scaling(size, frames)
+    _write(draw(measured), measured, output)
+    return measured, table(measured)
 
 
 def _check(output: Path) -> None:
@@ -99,11 +119,16 @@ def _check(output: Path) -> None:
     need("pictures")
 
 
-def _write(curve: "Curve", data: dict[str, Any], output: Path) -> None:
-    from ..output import replacing
+def _write_curve(curve: "Curve", data: dict[str, Any], output: Path) -> None:
     from ..studies.quality_picture import draw
+
+    _write(draw(curve), data, output)
+
+
+def _write(figure: "Figure", data: dict[str, Any], output: Path) -> None:
+    from ..output import replacing
     from .files import write_json
 
     with replacing(output) as file:
-        draw(curve).savefig(file, format="png")
+        figure.savefig(file, format="png")
     write_json(output.with_suffix(".json"), data)

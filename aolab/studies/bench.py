@@ -10,8 +10,6 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any
 
-import numpy as np
-
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
@@ -97,44 +95,6 @@ def _bare(shader: str) -> Module:
     return Bare(directions=16, steps=1, filter="none")
 
 
-def scaling(size: Size, repeats: int) -> Result:
-    """Growth of the passes' and the frame's time with pixels, taps and triangles: exponents of fitted power laws."""
-    lab = Lab(size)
-    boxes = load("boxes")
-    details = [load("atrium", detail=detail) for detail in (1, 2, 3, 4)]
-    shares = [(max(1, size[0] // k), max(1, size[1] // k)) for k in (4, 3, 2, 1)]
-    cases: dict[str, list[tuple[int, Scene, Module, Size]]] = {
-        "pixels": [(w * h, boxes, SSAO(), (w, h)) for w, h in shares],
-        "taps": [(n * 2, boxes, SSAO(directions=n, steps=2), size) for n in (8, 16, 32, 64)],
-        "triangles": [(scene.triangles, scene, SSAO(radius=0.5), size) for scene in details],
-    }
-    result: Result = {"renderer": context.renderer(), "size": list(size), "frames": repeats}
-    with progress_bar("settings", sum(map(len, cases.values()))) as bar:
-        for name, settings in cases.items():
-            costs = {}
-            for count, scene, module, pixels in settings:
-                costs[count] = _costs(lab, scene, module, pixels, repeats)
-                bar.update()
-            result[name] = _fit(costs)
-    return result
-
-
-def _costs(lab: Lab, scene: Scene, module: Module, size: Size, repeats: int) -> dict[str, float]:
-    measured = _module(lab, scene, module, size, repeats)
-    passes = {name: measured["passes"][name]["median"] for name in ("g_buffer", "ssao", "filter visibility")}
-    return {**passes, "frame": measured["frame"]["median"]}
-
-
-def _fit(costs: dict[int, dict[str, float]]) -> Result:
-    """Exponents of milliseconds ≈ c · x^exponent, by least squares on the logarithms."""
-    x = np.log(list(costs))
-    names = next(iter(costs.values()))
-    exponents = {
-        name: float(np.polyfit(x, np.log([max(one[name], 1e-3) for one in costs.values()]), 1)[0]) for name in names
-    }
-    return {"milliseconds": costs, "exponents": exponents}
-
-
 def start_up(repeats: int) -> Result:
     """Seconds to import aolab, and from process start to a saved picture, each time in a new process."""
     with tempfile.TemporaryDirectory() as folder:
@@ -159,13 +119,8 @@ def _process(arguments: list[str], repeats: int) -> dict[str, float]:
 
 
 def table(result: Result) -> str:
-    """The result of `frames`, `scaling` or `start_up` as lines of text, with the unit of every number."""
-    if "seconds" in result:
-        parts = [_summaries("seconds", result["seconds"])]
-    elif "exponents" in result.get("pixels", {}):
-        parts = [_scaling_table(name, result[name]) for name in ("pixels", "taps", "triangles")]
-    else:
-        parts = _frames_tables(result)
+    """The result of `frames` or `start_up` as lines of text, with the unit of every number."""
+    parts = [_summaries("seconds", result["seconds"])] if "seconds" in result else _frames_tables(result)
     where = [f"renderer: {result['renderer']}"]
     if "scene" in result:
         where.append(f"scene: {result['scene']}")
@@ -189,14 +144,6 @@ def _frames_tables(result: Result) -> list[str]:
         _summaries("milliseconds", {f"{name}, 16 taps": cost for name, cost in bare["milliseconds"].items()}),
         _summaries("ratio", {f"ssao / {name}": cost for name, cost in bare["ratio"].items()}),
     ]
-
-
-def _scaling_table(what: str, found: Result) -> str:
-    """Milliseconds by the number of pixels, taps or triangles, and the fitted exponents in the last line."""
-    names = list(found["exponents"])
-    rows = [[f"{count}", *(cost[name] for name in names)] for count, cost in found["milliseconds"].items()]
-    rows.append(["exponent", *(found["exponents"][name] for name in names)])
-    return aligned({what: ">", **{f"{name}, ms": ".3f" for name in names}}, rows)
 
 
 def _summaries(unit: str, found: Mapping[str, Mapping[str, float]]) -> str:

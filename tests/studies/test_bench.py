@@ -44,29 +44,6 @@ def test_frames(gl, monkeypatch):
     assert all(f"  {unit}  " in text for unit in ("milliseconds", "percent", "ratio"))
 
 
-@pytest.mark.figures
-def test_scaling(gl):
-    result = bench.scaling((40, 20), 3)
-    json.dumps(result)
-    assert list(result["pixels"]["milliseconds"]) == [10 * 5, 13 * 6, 20 * 10, 40 * 20]
-    assert list(result["taps"]["milliseconds"]) == [16, 32, 64, 128]
-    triangles = list(result["triangles"]["milliseconds"])
-    assert triangles == sorted(triangles)
-    assert triangles[-1] > 4 * triangles[0]
-    for part in ("pixels", "taps", "triangles"):
-        assert set(result[part]["exponents"]) == {"g_buffer", "ssao", "filter visibility", "frame"}
-        assert all(math.isfinite(one) for one in result[part]["exponents"].values())
-    text = bench.table(result)
-    assert text.count("exponent ") == 3
-    assert "g_buffer, ms" in text
-
-
-def test_a_power_law_is_fitted_exactly():
-    costs = {x: {"linear": 0.5 * x, "flat": 3.0, "square": 1e-3 * x * x} for x in (10, 20, 50, 80)}
-    exponents = bench._fit(costs)["exponents"]
-    assert exponents == pytest.approx({"linear": 1, "flat": 0, "square": 2})
-
-
 @pytest.mark.slow
 def test_start_up(gl):
     result = bench.start_up(2)

@@ -14,38 +14,30 @@ class VtkSSAO:
 
     def __init__(self, scene: Scene, camera: Camera, size: Size, radius: float) -> None:
         pyvista = need("pyvista")
-        vertices, faces = geometry(scene)
         self.name = f"VTK {pyvista.vtk_version_info.major}.{pyvista.vtk_version_info.minor} ssao"
         self.settings: dict[str, object] = {"directions": 16, "filter": "blur"}
-        self._plotter = pyvista.Plotter(off_screen=True, window_size=size)
-        self._plotter.add_mesh(
-            pyvista.PolyData.from_regular_faces(vertices - scene.centre, faces),
-            color="white",
-            ambient=1.0,  # a surface that reflects ambient light alone shows the occlusion
-            diffuse=0.0,
-            specular=0.0,
-        )
-        self._plotter.set_background("black")
-        view = self._plotter.camera
-        view.position = np.asarray(camera.eye) - scene.centre
-        view.focal_point = np.asarray(camera.target) - scene.centre
-        view.up, view.view_angle = camera.up, camera.fov
-        # the ratio of bias to radius, and the samples, are those of VTK's example TestSSAOPass
-        self._occlude = {"radius": radius, "bias": radius / 100, "kernel_size": 16, "blur": True}
-        self._occluded: bool | None = None
-        self._plotter.show(auto_close=False)
+        vertices, faces = geometry(scene)
+        mesh = pyvista.PolyData.from_regular_faces(vertices - scene.centre, faces)
+        # a window with and one without occlusion: switching it in one window compiles shaders in each frame
+        self._plotters = {}
+        for occlusion in (True, False):
+            plotter = pyvista.Plotter(off_screen=True, window_size=size)
+            # a surface that reflects ambient light alone shows the occlusion
+            plotter.add_mesh(mesh, color="white", ambient=1.0, diffuse=0.0, specular=0.0)
+            plotter.render_window.SetMultiSamples(0)  # as aolab
+            plotter.set_background("black")
+            plotter.camera.position = np.asarray(camera.eye) - scene.centre
+            plotter.camera.focal_point = np.asarray(camera.target) - scene.centre
+            plotter.camera.up, plotter.camera.view_angle = camera.up, camera.fov
+            if occlusion:  # the ratio of bias to radius is that of VTK's test of the pass
+                plotter.enable_ssao(radius=radius, bias=radius / 100, kernel_size=16, blur=True)
+            plotter.show(auto_close=False)
+            self._plotters[occlusion] = plotter
 
     def draw(self, occlusion: bool) -> None:
-        if occlusion is not self._occluded:
-            if occlusion:
-                self._plotter.enable_ssao(**self._occlude)
-            else:
-                self._plotter.disable_ssao()
-            self._occluded = occlusion
-        window = self._plotter.render_window
+        window = self._plotters[occlusion].render_window
         window.Render()
         window.WaitForCompletion()
 
     def visibility(self) -> np.ndarray:
-        self.draw(True)
-        return np.asarray(self._plotter.screenshot(return_img=True))[..., 0] / 255
+        return np.asarray(self._plotters[True].screenshot(return_img=True))[..., 0] / 255
