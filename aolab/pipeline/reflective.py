@@ -6,9 +6,10 @@ from math import inf
 
 import numpy as np
 
-from ..errors import Notice
+from ..errors import Notice, ParameterError
+from ..gl import context
 from ..gl.bindings import Bindings
-from ..gl.texture import check_size, make
+from ..gl.texture import make
 from ..modules.buffers import REFLECTIVE
 from ..modules.passes import GeometryPass, Pass
 from ..scene.lights import PointLight
@@ -78,7 +79,13 @@ def _drawn(
     rasterizer: Rasterizer, projections: list[tuple[np.ndarray, np.ndarray]], size: int, given: list[Bindings]
 ) -> Buffers:
     """The maps, and the same packed."""
-    sheet = check_size((max(1, len(projections)) * size, size))
+    count, limit = max(1, len(projections)), context.get().info["GL_MAX_TEXTURE_SIZE"]
+    if count * size > limit:
+        raise ParameterError(
+            f"{count} reflective shadow maps of {size} pixels a side stand in a row of {count * size}; this driver has "
+            f"at most {limit}. At most {limit // size} such maps fit, or {count} with rsm_resolution = {limit // count}"
+        )
+    sheet = count * size, size
     views = [
         Projection(view, clip, (size, size), (number * size, 0), sheet)
         for number, (view, clip) in enumerate(projections or [_NOTHING])
