@@ -10,6 +10,7 @@
 
 #include "lib/space.glsl"
 #include "lib/receiver.glsl"
+#include "lib/line.glsl"
 #include "occluders.glsl"
 
 const int line_samples;
@@ -18,7 +19,7 @@ uniform float radius;     // scene units
 uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform float strength;
-uniform vec4 kernel[line_samples];  // xy, the sample's place on the line, in radii; z, its share of the disc
+uniform vec3 line_start;  // of lib/line.glsl
 uniform vec4 ray_from_pixel;
 uniform sampler2D facetNormal;  // of the triangle, unit, view space
 
@@ -43,14 +44,13 @@ void main() {
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, facet = texelFetch(facetNormal, pixel, 0).xyz;
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     Receiver receiver = receiverAt(pixel, surfacePos + facet * (bias * radius), normal, facet, texel_size);
-    float angleRad = 2.0 * PI * float(receiver.set) / 16.0;
-    mat2 turn = mat2(cos(angleRad), sin(angleRad), -sin(angleRad), cos(angleRad));
+    Line line = lineOf(receiver.set, line_start);
     // pixels a radius, at the receiver's depth
     float reachPx = radius * pixel_from_ray.x / (orthographic ? 1.0 : -centreZ);
     float occlusion = 0.0;
     for (int i = 0; i < line_samples; ++i) {
         // a pixel's centre, whose depth is exact: a plane does not block itself
-        vec2 at = floor(gl_FragCoord.xy + reachPx * (turn * kernel[i].xy)) + 0.5;
+        vec2 at = floor(gl_FragCoord.xy + reachPx * onLine(line, i, line_samples).xy) + 0.5;
         vec3 samplePos = onPlane(at, receiver.viewPos, facet, centreZ - radius);
         Occluder occluder;
         if (!isBlocked(receiver, samplePos, thickness * radius, occluder)) continue;

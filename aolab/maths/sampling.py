@@ -74,27 +74,21 @@ def disc(count: int, seed: int) -> np.ndarray:
     shift = np.random.default_rng(seed).random(2)
     radius = (index + (0.5 if seed == 0 else shift[0])) / count
     angle = 2 * np.pi * (radical_inverse(index, 2) + shift[1])
-    return _plane_samples(radius, angle, 2 * radius / count)
-
-
-@lru_cache(maxsize=64)
-def line(count: int, seed: int) -> np.ndarray:
-    """Samples on a line from the centre of the unit disc to its rim: (count, 4) float32 of x, y, the share, 0.
-
-    The distances are x² for even x in (0, 1) (Chow 2014, step 1). Turned by all angles, a sample sweeps a ring of the
-    width 2 x / N, and its share of the disc is 4 x³ / N. `seed` shifts the distances and turns the line.
-    """
-    index = np.arange(count)
-    shift = np.random.default_rng(seed).random(2)
-    x = (index + (0.5 if seed == 0 else shift[0])) / count
-    angle = np.full(count, 2 * np.pi * shift[1])  # over many seeds, every pixel looks in all directions
-    return _plane_samples(x**2, angle, 4 * x**3 / count)
-
-
-def _plane_samples(radius: np.ndarray, angle: np.ndarray, share: np.ndarray) -> np.ndarray:
-    samples = np.stack([radius * np.cos(angle), radius * np.sin(angle), share, 0 * share], axis=1).astype(np.float32)
+    samples = np.stack([radius * np.cos(angle), radius * np.sin(angle), 2 * radius / count, 0 * radius], axis=1)
+    samples = samples.astype(np.float32)
     samples.flags.writeable = False
     return samples
+
+
+def line_start(seed: int) -> np.ndarray:
+    """The rotated kernel of a seed, as glsl/lib/line.glsl reads it: (3,) float32.
+
+    The unit direction of the first of 16 angles, and the shift of the first samples, in [0, 1). Over many seeds, every
+    pixel looks in all directions.
+    """
+    shift = np.random.default_rng(seed).random(2)
+    angle = 2 * np.pi * shift[1]
+    return np.array([np.cos(angle), np.sin(angle), 0.0 if seed == 0 else shift[0]], np.float32)
 
 
 def influence(squared_distance: np.ndarray, falloff: float) -> np.ndarray:

@@ -15,7 +15,7 @@ _LIT = ("direct", "ambient", "indirect", "radiance", "image")
 # the fields of a question that each buffer depends on; `direct` depends on none
 _FIELDS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(_OPEN, _OCCLUSION),
-    **dict.fromkeys(("indirect", "radiance", "image"), (*_OCCLUSION, "limited_senders")),
+    **dict.fromkeys(("indirect", "radiance", "image"), (*_OCCLUSION, "limited_senders", "blocked_senders")),
     **dict.fromkeys(("obscurance", "transfer"), ("radius", "measure", "sigma", "spread")),
     "transfer_multibounce": ("radius", "spread", "bounces"),
 }

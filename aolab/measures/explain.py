@@ -28,6 +28,7 @@ PERIOD = 4  # pixels: the interleaved pattern of sample sets repeats after so ma
 PARTS = ("sampling noise", "filter", "few steps", "hidden layers", "off-screen geometry", "method")
 SENDERS = "limited senders"
 COARSE = "coarse voxels"
+UNBLOCKED = "unblocked bounce"
 FINEST = 1024  # voxels along a side
 BOUNCED = ("indirect", "radiance", "image")  # the buffers that hold a bounce
 
@@ -44,6 +45,9 @@ class Explanation:
     - `coarse voxels`, of `occluders="voxels"`: the same, against a grid of twice as many voxels along each side;
     - `method`: the rest, against rays that answer the module's own question. For voxels, these rays meet the exact
       triangles, and there are no hidden layers;
+    - `unblocked bounce`, of buffers with the bounce of reflective shadow maps: rays that collect the light of all
+      surfaces along them, which is that bounce's own question, against rays that end at the first surface. It stands
+      before `limited senders`;
     - `limited senders`, of buffers with a bounce: these rays against rays whose senders receive the environment's light
       from any distance, not only within the module's radius.
 
@@ -139,7 +143,11 @@ def explain(
     if buffer not in frame.buffers:
         raise ParameterError(f"{frame.info['module']} gives no '{buffer}'{suggestion(buffer, frame.buffers)}")
     bounced = buffer in BOUNCED
-    questions = [module.question(), module.question().replace(limited_senders=False)][: 1 + bounced]
+    own = module.question()
+    questions = [own, own.replace(limited_senders=False)] if bounced else [own]
+    unblocked = bounced and "rsm" in type(module).parts
+    if unblocked:
+        questions.insert(0, own.replace(blocked_senders=False))
     view = {"size": size, "camera": camera}
     truths = [reference(scene, like=one, rays=rays, seed=seed, buffers=(buffer,), **view) for one in questions]
     chain = [
@@ -153,7 +161,13 @@ def explain(
         *(truth[buffer] for truth in truths),
     ]
     chain = [np.where(_like(frame.mask, values), values, np.nan).astype(np.float64) for values in chain]
-    names = [*PARTS[:-1], *([COARSE] if fine is not layered else []), PARTS[-1], SENDERS][: len(chain) - 1]
+    names = [
+        *PARTS[:-1],
+        *([COARSE] if fine is not layered else []),
+        PARTS[-1],
+        *([UNBLOCKED] if unblocked else []),
+        *([SENDERS] if bounced else []),
+    ]
     parts = {name: first - second for name, (first, second) in zip(names, pairwise(chain), strict=True)}
     return Explanation(frame, truths[-1], buffer, chain[0] - chain[-1], parts)
 

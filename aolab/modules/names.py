@@ -19,10 +19,10 @@ OWNERS: dict[str, tuple[str, ...]] = {
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
         "light_spot_cos",
     ),
-    "the reflective shadow maps": ("rsm_tiles",),
+    "the reflective shadow maps": ("rsm_tiles", "rsm_box"),
     "the virtual lights": ("first_light", "light_count"),
     "the environment": ("irradiance_sh", "view_environment_sh"),
-    "the samples": ("kernel", "rsm_kernel"),
+    "the samples": ("kernel", "rsm_kernel", "line_start"),
     "the mesh": (
         "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission", "one_sided", "cut_outs",
         "normal_scale", "normal_mapped", "relief_number", "bent_normals", "is_smooth",

@@ -22,6 +22,8 @@ class Question:
     - `bounces`: the greatest number of reflections in `transfer_multibounce`;
     - `limited_senders`: the environment's light on what blocks is limited by `radius` and `falloff`, as in modules,
       where each sender is a pixel with its own visibility. Without it, senders receive the physical light;
+    - `blocked_senders`: surfaces block the light that other surfaces send. Without it, each ray collects the light of
+      all surfaces along it, as a gather from reflective shadow maps does;
     - `normals`: the hemisphere's axis, the normal that normal and height maps bend (`shading`), or the vertices' own
       (`geometric`).
 
@@ -35,6 +37,7 @@ class Question:
     spread: float = 1.0
     bounces: int = 8
     limited_senders: bool = False
+    blocked_senders: bool = True
     normals: Literal["shading", "geometric"] = "shading"
 
     def __post_init__(self) -> None:

@@ -1,6 +1,6 @@
 """Ambient occlusion from samples on a line of the screen, which 4×4 pixels turn by as many angles."""
 
-from ..maths.sampling import line
+from ..maths.sampling import line_start
 from .base import Bias, Module, Radius, Thickness
 from .parameters import parameter
 
@@ -25,4 +25,4 @@ class RotatedSSAO(Module):
     thickness: Thickness = 2.0
 
     def samples(self, seed: int) -> dict[str, bytes]:
-        return {"kernel": line(self.line_samples, seed).tobytes()}
+        return {"line_start": line_start(seed).tobytes()}

@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from ..maths.sampling import disc, line
+from ..maths.sampling import disc, line_start
 from ..scene.scene import Scene
 from .base import AUTO, Module
 from .buffers import REFLECTED
@@ -50,15 +50,19 @@ def with_rsm(base: type[Module]) -> type[Module]:
         )
         rsm_samples: Samples = AUTO
         rsm_radius: float = parameter(
-            0.7, "Reach of the samples around a point's projection, as a share of the map's side.", gt=0, le=1.5
+            0.5,
+            "Half the side of the square around a point's projection that it gathers from, as a share of the map's "
+            "side; 0.5 is the whole map.",
+            gt=0,
+            le=0.5,
         )
         rsm_resolution: int = parameter(256, "Pixels a side of a reflective shadow map.", ge=8, le=2048, unit="pixels")
         shaded: bool = parameter(True, "The visibility of the module dims the bounce.")
 
         def samples(self, seed: int) -> dict[str, bytes]:
             count = self.rsm_samples if isinstance(self.rsm_samples, int) else AUTO_SAMPLES[self.gather]
-            kernel = line(count, seed) if self.gather == "rotated" else disc(count, seed)
-            return super().samples(seed) | {"rsm_kernel": kernel.tobytes()}
+            own = {"rsm_kernel": disc(count, seed).tobytes(), "line_start": line_start(seed).tobytes()}
+            return super().samples(seed) | own
 
         def lighting(self) -> Sequence[Pass | Estimate]:
             before = super().lighting()

@@ -40,7 +40,7 @@ from .lighting import Display, Lights, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
-from .reflective import ReflectiveMaps, draw_reflective
+from .reflective import PACKED, ReflectiveMaps, draw_reflective
 from .senders import senders
 from .shadows import ShadowMaps, ShadowSettings, draw_shadows
 from .state import FrameContext, SurfaceState
@@ -231,7 +231,7 @@ class Lab:
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
         module, view = frame.module, frame.view
         with self._lending(runner):
-            reflective = REFLECTIVE if sampled(frame) & REFLECTIVE.keys() else ()
+            reflective = REFLECTIVE if reflects(frame) else ()
             lights = self._lights(frame) if module.lit or reflective else None
             if module.lit and lights is not None:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
@@ -273,7 +273,7 @@ class Lab:
         tables = self._environments.tables(scene.environment, module.tables())
         lamps = lighting.lamps(scene, self._shadow_maps(frame.rasterizer, ShadowSettings.of(module)))
         reflective = None
-        if sampled(frame) & REFLECTIVE.keys():
+        if reflects(frame):
             reflective = draw_reflective(frame.rasterizer, lamps, int(module.numbers().get("rsm_resolution", MAP_SIZE)))
         steps = [step for step in module.lighting() if isinstance(step, VirtualLights)]
         virtual = {step.name: self._virtual_lights(frame, step, reflective) for step in steps}
@@ -343,6 +343,11 @@ def sampled(frame: FrameContext) -> set[str]:
             names |= declared(text).samplers
     lights = [step.samples for step in frame.module.lighting() if isinstance(step, VirtualLights)]
     return names.union(*lights)
+
+
+def reflects(frame: FrameContext) -> bool:
+    """Whether the module samples the reflective shadow maps."""
+    return bool(sampled(frame) & {*REFLECTIVE, PACKED})
 
 
 def surface_formats(frame: FrameContext) -> dict[str, str]:

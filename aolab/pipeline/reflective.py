@@ -1,16 +1,17 @@
 """Reflective shadow maps: the surfaces that each light sees, with the flux that they reflect; in one row."""
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
-from ..errors import Notice
+from ..errors import Notice, ParameterError
+from ..gl import context
 from ..gl.bindings import Bindings
-from ..gl.texture import check_size, make
+from ..gl.texture import make
 from ..modules.buffers import REFLECTIVE
-from ..modules.passes import GeometryPass
+from ..modules.passes import GeometryPass, Pass
 from ..scene.lights import PointLight
 from ..scene.view import Projection
 from .pass_runner import Buffers
@@ -24,6 +25,8 @@ _MAPS = GeometryPass(
     clear={"rsm_depth": inf},
 )
 
+PACKED = "rsm_packed"
+_PACK = Pass("pack maps", "rsm.pack.frag", {PACKED: "RGBA32UI"})
 
 # view_from_world and clip_from_view of a map without a light: every vertex lies behind the far plane
 _NOTHING = np.eye(4), np.array([(0, 0, 0, 0), (0, 0, 0, 0), (0, 0, 0, 2), (0, 0, 0, 1)], float)
@@ -58,15 +61,34 @@ def draw_reflective(rasterizer: Rasterizer, lamps: Bindings, size: int) -> Refle
             ((view, clip),) = light_projections(light, scene)
             projections.append((view, clip))
             rows.append([*(clip @ view).T, (number, 2 / clip[0, 0] / size, size, 0)])
-    count = len(rows)
-    sheet = check_size((max(1, count) * size, size))
     table = np.array(rows or np.zeros((1, 5, 4)), np.float32)  # GL has no empty texture
-    textures = {"rsm_table": make((5, len(table)), "RGBA32F", table.tobytes())}
-    constants = {"rsm_tiles": count}
-    given = Bindings("the reflective shadow maps", textures, constants=constants)
+    box = (*(scene.centre - scene.shader_origin), scene.radius * 1.001)
+    given = Bindings(
+        "the reflective shadow maps",
+        {"rsm_table": make((5, len(table)), "RGBA32F", table.tobytes())},
+        {"rsm_box": tuple(map(float, box))},
+        {"rsm_tiles": len(rows)},
+    )
+    key = (scene.instances, scene.lights, size)
+    maps = rasterizer.kept("reflective shadow maps", key, lambda: _drawn(rasterizer, projections, size, [lamps, given]))
+    buffers = {name: maps[name] for name in REFLECTIVE}
+    return ReflectiveMaps(buffers, replace(given, textures={**given.textures, **maps}))
+
+
+def _drawn(
+    rasterizer: Rasterizer, projections: list[tuple[np.ndarray, np.ndarray]], size: int, given: list[Bindings]
+) -> Buffers:
+    """The maps, and the same packed."""
+    count, limit = max(1, len(projections)), context.get().info["GL_MAX_TEXTURE_SIZE"]
+    if count * size > limit:
+        raise ParameterError(
+            f"{count} reflective shadow maps of {size} pixels a side stand in a row of {count * size}; this driver has "
+            f"at most {limit}. At most {limit // size} such maps fit, or {count} with rsm_resolution = {limit // count}"
+        )
+    sheet = count * size, size
     views = [
         Projection(view, clip, (size, size), (number * size, 0), sheet)
         for number, (view, clip) in enumerate(projections or [_NOTHING])
     ]
-    buffers = rasterizer.triangles(_MAPS, views, [lamps, given])
-    return ReflectiveMaps(buffers, Bindings("the reflective shadow maps", {**textures, **buffers}, constants=constants))
+    maps = rasterizer.triangles(_MAPS, views, given)
+    return maps | rasterizer.run(_PACK, [*given, Bindings("the maps", maps)], sheet)

@@ -73,8 +73,9 @@ def _sample(
     closed = 1 - setting.open(distance)
     counts = (facing > 0) & (rising > 0) & (closed > 0)
     counts = np.flatnonzero(counts)
-    blocked = world.occluded(points.position[found[counts]], towards[counts], distance[counts])
-    counts = counts[~blocked]
+    if setting.question.blocked_senders:
+        blocked = world.occluded(points.position[found[counts]], towards[counts], distance[counts])
+        counts = counts[~blocked]
 
     back, _, share = towards_light(light, sender[counts], world.centre)
     share *= np.maximum((normal[counts] * back).sum(axis=1), 0)  # the ray came from the lamp: there is no shadow

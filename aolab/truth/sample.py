@@ -1,7 +1,7 @@
 """One ray a point and its hit: the input of the integrands."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -72,6 +72,18 @@ class Sample:
     open: np.ndarray  # (n,) float32
     hits: Hits | None
     randoms: Randoms
+
+    def beyond(self) -> "Sample":
+        """The same rays behind their first hits."""
+        b, setting = self.blocked, self.setting
+        start = self.first.distance[b] + np.float32(2 * setting.world.lift)
+        origins = self.points.position[b] + self.ways[b] * start[:, None]
+        further = setting.world.first_hit(origins, self.ways[b], np.float32(setting.limit) - start)
+        empty = (np.inf, -1, 0, 0)
+        hits = Hits(*(np.full_like(part, value) for part, value in zip(self.first, empty, strict=True)))
+        for part, new in zip(hits, (further.distance + start, *further[1:]), strict=True):
+            part[b] = new
+        return replace(self, open=setting.open(hits.distance), hits=hits)
 
     @property
     def first(self) -> Hits:

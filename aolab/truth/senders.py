@@ -9,7 +9,19 @@ from .sample import Sample
 
 
 def sent(sample: Sample) -> np.ndarray:
-    """(n, 3): the radiance that a blocking surface sends along each ray, times its blocked share; 0 along open rays."""
+    """(n, 3): the radiance that a blocking surface sends along each ray, times its blocked share; 0 along open rays.
+
+    Without `blocked_senders`, the sum over all surfaces along the ray.
+    """
+    light = _of_first(sample)
+    while not sample.setting.question.blocked_senders and len(sample.blocked):
+        sample = sample.beyond()
+        light += _of_first(sample)
+    return light
+
+
+def _of_first(sample: Sample) -> np.ndarray:
+    """(n, 3): the same of the first surface alone."""
     setting, b = sample.setting, sample.blocked
     positions, normals = sample.hit_surface
     rising = sample.points.cosine(sample.ways[b], b, setting.covered)

@@ -118,3 +118,25 @@ def test_coarse_voxels_are_a_part_that_a_finer_grid_cures(boxes):
     assert table["hidden layers"]["rmse"] == 0
     assert table["coarse voxels"]["rmse"] > 2 * fine["coarse voxels"]["rmse"]
     assert "coarse voxels" not in aolab.explain(boxes, "ssao", **{**options, "frames": 2}).table()
+
+
+def test_a_screen_that_the_bounce_passes_through_is_a_part_of_its_own(lab):
+    """A lit wall, a floor before it, and a dark screen between them, which the bounce ignores."""
+    lit = box((-2, 0, -2.2), (2, 2, -2))
+    screen = box((-1.5, 0.01, -1.0), (1.5, 1.5, -0.98))
+    lamp = aolab.SpotLight((0, 1.6, -1.2), (0, -0.3, -1), (8, 8, 8), inner=20, outer=30)
+    camera = aolab.Camera(eye=(0, 3, 3), target=(0, 0, 0), fov=45)
+    dark = aolab.Environment.constant(0.0)
+    scene, free = (of(floor(), lit, *more, camera=camera, lights=(lamp,), sky=dark) for more in ((screen,), ()))
+    options = {"buffer": "indirect", "size": (48, 32), "rays": 128, "frames": 8}
+    explained = aolab.explain(scene, "rsm", **options)
+    table = explained.table()
+    assert explained.residual < 1e-6
+    assert table["unblocked bounce"]["bias"] > 0.5 * table["error"]["bias"] > 0
+    assert abs(table["method"]["bias"]) < 0.1 * table["unblocked bounce"]["bias"]
+    through, plain = (
+        aolab.reference(one, buffers="indirect", rays=256, blocked_senders=blocked, size=(48, 32), cache=False)
+        for one, blocked in ((scene, False), (free, True))
+    )
+    ground = through.mask & (through.world_normal()[..., 1] > 0.9) & np.isclose(through["viewZ"], plain["viewZ"])
+    assert through["indirect"][ground].mean() == pytest.approx(plain["indirect"][ground].mean(), rel=0.02)

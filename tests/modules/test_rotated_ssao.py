@@ -4,19 +4,29 @@ import numpy as np
 import pytest
 
 import aolab
-from aolab.maths.sampling import line
+from aolab.maths.sampling import line_start
 
 
 @pytest.mark.parametrize("seed", [0, 1, 7])
-def test_the_lines_distances_are_squares_and_its_shares_fill_the_disc(seed):
-    kernel = line(24, seed)
-    distance = np.linalg.norm(kernel[:, :2], axis=1)
-    steps = np.diff(np.sqrt(distance))
-    np.testing.assert_allclose(steps, 1 / 24, rtol=1e-3)
-    assert kernel[:, 2].sum() == pytest.approx(1, abs=0.1)
-    # ∫ r² over the disc, as a share of its area, is 1/2
-    fine = line(1024, seed)
-    assert (fine[:, 2] * (fine[:, :2] ** 2).sum(axis=1)).sum() == pytest.approx(0.5, abs=0.01)
+def test_the_lines_of_a_block_fill_the_disc_evenly(glsl, seed):
+    """24 samples on each of the 16 lines: distances x² for even x, shares of the disc, and moments of a full disc."""
+    sets, samples = np.repeat(np.arange(16), 24), np.tile(np.arange(24), 16)
+    xyz = glsl(
+        "lib/line.glsl",
+        "result.xyz = onLine(lineOf(int(x.x), start.xyz), int(x.y), 24);",
+        np.stack([sets, samples, sets, sets], axis=1),
+        start=(*line_start(seed).tolist(), 0.0),
+    )
+    place, share = xyz[:, :2], xyz[:, 2]
+    x = np.sqrt(np.linalg.norm(place, axis=1)).reshape(16, 24)
+    np.testing.assert_allclose(np.diff(x, axis=1), 1 / 24, rtol=1e-3)
+    np.testing.assert_allclose(np.diff(np.sort(x.ravel())), 1 / (16 * 24), rtol=0.02)  # all 384 distances differ
+    assert share.sum() / 16 == pytest.approx(1, abs=2e-3)
+    squared = (place**2).sum(axis=1)
+    assert (share * squared).sum() / 16 == pytest.approx(1 / 2, abs=2e-3)
+    second = (share[:, None, None] * place[:, :, None] * place[:, None, :]).sum(axis=0) / 16
+    np.testing.assert_allclose(second, np.eye(2) / 4, atol=0.01)
+    np.testing.assert_allclose((share[:, None] * place).sum(axis=0) / 16, 0, atol=0.01)
 
 
 def test_the_mean_of_four_by_four_pixels_removes_the_pattern(lab, boxes):

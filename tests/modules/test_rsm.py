@@ -93,6 +93,44 @@ def test_the_maps_of_several_lights_stand_side_by_side(lab):
             )
 
 
+def test_a_pixel_light_is_packed_into_four_words(glsl):
+    """Position, area, normal and flux come back as exact as glsl/lib/pixel_light.glsl states."""
+    rng = np.random.default_rng(1)
+    count, box = 200, (1.0, -2.0, 3.0, 5.0)
+    place = rng.uniform(-5, 5, (count, 3)) + box[:3]
+    normal = rng.normal(size=(count, 3))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    flux = 10 ** rng.uniform(-12, 4, (count, 1)) * rng.uniform(0, 1, (count, 3))
+    flux[:3] = 0
+    area = rng.uniform(0, 0.5, count) ** 2
+
+    def returned(light: str, member: str) -> np.ndarray:
+        statement = f"result.xyz = vec3(pixelLightOf(wordsOf(PixelLight({light}), box), box).{member});"
+        return glsl("lib/pixel_light.glsl", statement, x, box=box)
+
+    x = np.column_stack([place, area])
+    np.testing.assert_allclose(returned("x.xyz, x.w, vec3(0, 1, 0), vec3(0)", "worldPos")[:, :3], place, atol=8e-5)
+    root = np.sqrt(returned("x.xyz, x.w, vec3(0, 1, 0), vec3(0)", "area")[:, 0])
+    np.testing.assert_allclose(root, np.sqrt(area), atol=4e-5)
+    x = np.column_stack([normal, area])
+    np.testing.assert_allclose(returned("vec3(0), 0.0, x.xyz, vec3(0)", "normal")[:, :3], normal, atol=1e-3)
+    x = np.column_stack([flux, area])
+    error = np.abs(returned("vec3(0), 0.0, vec3(0, 1, 0), x.xyz", "flux")[:, :3] - flux)
+    assert (error <= 0.004 * flux.max(axis=1, keepdims=True)).all()
+
+
+def test_the_maps_are_kept_while_scene_and_lights_stay(lab):
+    scene = corner(LIGHTS["spot"])
+    first, second = (lab.render(scene, "rsm", size=SIZE, seed=seed) for seed in (0, 1))
+    assert "reflective shadow maps" in first.complete().timings
+    assert "reflective shadow maps" not in second.complete().timings
+    moved = SpotLight((2, 2.5, 1.5), (-1, -0.4, -0.1), (6, 6, 6), inner=15, outer=25)
+    third = lab.relight(second, lights=(moved,))
+    assert np.abs(third["rsm_position"] - first["rsm_position"]).max() > 0.1
+    assert "reflective shadow maps" in third.timings
+    np.testing.assert_array_equal(first["rsm_position"], second["rsm_position"])
+
+
 # --- the gathered bounce
 
 
@@ -100,15 +138,30 @@ def test_the_maps_of_several_lights_stand_side_by_side(lab):
 @pytest.mark.parametrize("kind", LIGHTS)
 def test_the_bounce_is_the_sum_over_all_pixel_lights(lab, kind, gather):
     scene = corner(LIGHTS[kind])
-    frame = lab.render(scene, "rsm", gather=gather, rsm_radius=1.4, rsm_resolution=64, size=SIZE, accumulate=4)
+    frame = lab.render(scene, "rsm", gather=gather, rsm_resolution=64, size=SIZE, accumulate=4)
     exact = all_pixel_lights(frame, scene)
     mean = exact[frame.mask].mean()
     error = (frame["rsm_irradiance"] - exact)[frame.mask]
-    assert np.sqrt((error**2).mean()) < {"full": 0.1, "low": 0.2, "rotated": 0.5}[gather] * mean
+    assert np.sqrt((error**2).mean()) < {"full": 0.1, "low": 0.2, "rotated": 0.3}[gather] * mean
     assert abs(error.mean()) < 0.1 * mean
     reflected = frame["albedo"] / np.pi * frame["rsm_irradiance"]
     np.testing.assert_allclose(frame["indirect"][frame.mask], reflected[frame.mask], rtol=1e-3, atol=1e-6)
     assert frame["indirect"][..., 0].sum() > 2 * frame["indirect"][..., 2].sum()  # the wall is red
+
+
+def test_points_beyond_the_maps_sides_gather_from_all_of_it(lab):
+    """A wall beside and above a narrow cone of light, and a ceiling behind the lamp: no stripes, no loss."""
+    lamp = SpotLight((0, 5.4, -2.8), (0, -1, 0), (36, 28, 18), inner=50, outer=60)
+    scene = aolab.load("cornell", daylight=0.0).replace(lights=(lamp,), environment=DARK)
+    frame = lab.render(scene, "rsm", size=(96, 54), rsm_resolution=64)
+    exact = all_pixel_lights(frame, scene)
+    assert scene.camera is not None
+    points = small_scenes.world_positions(frame, scene.camera)
+    for part in (points[..., 2] < -5.5) & (points[..., 1] > 3.9), points[..., 1] > 5.45:
+        error = (frame["rsm_irradiance"] - exact)[part & frame.mask]
+        mean = exact[part & frame.mask].mean()
+        assert np.sqrt((error**2).mean()) < 0.2 * mean
+        assert abs(error.mean()) < 0.05 * mean
 
 
 def test_two_lights_bounce_as_much_as_each_of_them(lab):
@@ -131,7 +184,7 @@ def test_low_resolution_gathers_at_edges_and_interpolates_elsewhere(lab):
 
 def test_the_mean_of_four_by_four_pixels_is_nearer_to_the_sum(lab):
     scene = corner(LIGHTS["spot"])
-    frame = lab.render(scene, "rsm", rsm_radius=1.4, rsm_resolution=64, size=SIZE)
+    frame = lab.render(scene, "rsm", rsm_resolution=64, size=SIZE)
     exact = all_pixel_lights(frame, scene)
     raw, filtered = (
         np.sqrt(((frame[name] - exact)[frame.mask] ** 2).mean()) for name in ("rsm_irradiance_raw", "rsm_irradiance")
@@ -142,7 +195,7 @@ def test_the_mean_of_four_by_four_pixels_is_nearer_to_the_sum(lab):
 def test_many_seeds_converge_without_a_filter(lab):
     """A pixel's line turns with the seed, so that the pattern vanishes."""
     scene = corner(LIGHTS["spot"])
-    settings = {"rsm_radius": 1.4, "rsm_resolution": 64, "size": SIZE, "filter": "none"}
+    settings = {"rsm_resolution": 64, "size": SIZE, "filter": "none"}
     frames = [lab.render(scene, "rsm", accumulate=count, **settings) for count in (1, 64)]
     exact = all_pixel_lights(frames[0], scene)
     one, many = (
@@ -230,5 +283,5 @@ def test_without_a_light_or_with_a_dark_one_there_is_no_bounce(lab):
 def test_too_wide_a_row_of_maps_is_refused(lab):
     most = context.get().info["GL_MAX_TEXTURE_SIZE"] // 2048
     lights = tuple(SpotLight((2, 2, 0.01 * i), (-1, -1, 0)) for i in range(most + 1))
-    with pytest.raises(aolab.ParameterError, match=f"size = {(most + 1) * 2048}x2048"):
+    with pytest.raises(aolab.ParameterError, match=f"At most {most} such maps fit, or {most + 1} with rsm_resolution"):
         lab.render(corner(*lights), "rsm", size=SIZE, rsm_resolution=2048)

@@ -7,6 +7,7 @@ import small_scenes
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Material, PointLight, Scene, SpotLight
 from aolab.errors import ParameterError
+from aolab.gl import context
 from aolab.gl.loops import LOOP_STEPS, check_loops
 from aolab.pipeline import virtual_lights
 
@@ -156,6 +157,16 @@ def test_more_lights_than_the_largest_atlas_holds_are_refused(lab, boxes):
         lab.render(boxes, "environment_vpl", environment_lights=257)
     with pytest.raises(ParameterError, match=r"vpl_resolution = 513 is not valid: int, ≥ 16, ≤ 512, in pixels"):
         lab.render(boxes, "instant_radiosity", vpl_resolution=513)
+
+
+@pytest.mark.parametrize("module", ["environment_vpl", "instant_radiosity"])
+def test_an_atlas_beyond_the_driver_names_the_largest_that_fits(lab, room, monkeypatch, module):
+    monkeypatch.setitem(context.get().info, "GL_MAX_TEXTURE_SIZE", 1024)
+    count = {"environment_vpl": "environment_lights", "instant_radiosity": "bounce_lights"}[module]
+    told = r"shadow maps of 256 pixels .* at most 1024x1024. At most 16 such maps fit, or \d+ maps of \d+ pixels"
+    scene = room.replace(environment=Environment.constant(1.0))
+    with pytest.raises(ParameterError, match=told):
+        lab.render(scene, module, size=SIZE, vpl_resolution=256, shadow_resolution=64, **{count: 64}).complete()
 
 
 def test_dark_lamps_lamps_in_solids_and_dark_skies_give_no_light(lab):

@@ -109,16 +109,13 @@ EDITS = {
     "a map without the lamp's cone": (("rsm.map.frag", "* arriving * section", "* arriving * arriving * section"),),
     "the depth of a ray": (("rsm.map.frag", "rsm_depth = -viewPos.z", "rsm_depth = length(viewPos)"),),
     "pixel lights that send to all sides": (
-        ("lib/pixel_lights.glsl", "max(dot(texelFetch(rsm_normal, texel, 0).xyz, there), 0.0)", "sqrt(squared)"),
+        ("lib/pixel_lights.glsl", "max(dot(light.normal, there), 0.0)", "sqrt(squared)"),
     ),
     "pixel lights of half the flux": (("lib/pixel_lights.glsl", "count / PI * cosines", "0.5 * count / PI * cosines"),),
     "a sixteenth of the occlusion": (("rotated_ssao.frag", "strength * occlusion", "strength / 16.0 * occlusion"),),
     "the mean of 2×2 pixels": (("pipeline/box4.frag", "i <= 2;", "i <= 0;"),),
     "a tenth of the reach": (("rotated_ssao.frag", "float reachPx = radius", "float reachPx = 0.1 * radius"),),
-    "one angle for all pixels": (
-        ("lib/pixel_lights.glsl", "float(set) / 16.0", "0.1"),
-        ("rotated_ssao.frag", "float(receiver.set) / 16.0", "0.1"),
-    ),
+    "one angle for all pixels": (("lib/line.glsl", "2.0 * PI * float(set) / 16.0", "0.1"),),
 }
 
 SMALL = {
