@@ -31,7 +31,7 @@ Case = tuple[int, Scene, Module, Size]
 def scaling(size: Size, repeats: int) -> dict[str, Any]:
     """Milliseconds of the parts of a frame with `ssao`, and of the frame, while one number grows; and its exponents.
 
-    Each time is the median of `repeats` frames. The settings of a number take turns.
+    Each time is the median of `repeats` warm frames: shadow maps are drawn before.
     """
     lab, cases = Lab(size), _cases(size)
     result: dict[str, Any] = {
@@ -65,14 +65,11 @@ def _cases(size: Size) -> dict[str, list[Case]]:
 
 
 def _measured(lab: Lab, settings: list[Case], repeats: int) -> Iterator[tuple[int, dict[str, float]]]:
-    times: list[list[dict[str, float]]] = [[] for _ in settings]
-    for turn in range(repeats + 1):
-        for (_, scene, module, pixels), known in zip(settings, times, strict=True):
-            frame = lab.render(scene, module, size=pixels).complete()
-            if turn:  # the first frames compile shaders and draw shadow maps
-                known.append(_parts(frame.timings, frame.frame_ms))
-    for (count, *_), known in zip(settings, times, strict=True):
-        yield count, {name: statistics.median(frame[name] for frame in known) for name in known[0]}
+    for count, scene, module, pixels in settings:
+        lab.render(scene, module, size=pixels).complete()  # compiles shaders, uploads, draws shadow maps
+        frames = [lab.render(scene, module, size=pixels).complete() for _ in range(repeats)]
+        parts = [_parts(frame.timings, frame.frame_ms) for frame in frames]
+        yield count, {name: statistics.median(one[name] for one in parts) for name in parts[0]}
 
 
 def _parts(timings: Mapping[str, float], frame: float) -> dict[str, float]:
