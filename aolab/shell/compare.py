@@ -11,9 +11,7 @@ from . import completion, options
 if TYPE_CHECKING:
     from ..measures.turning_light import Relighting
     from ..modules import Module
-    from ..studies.ranking import Entry
-
-MEASURES = ("rmse", "bias", "p99", "ssim", "flip")
+    from ..studies.ranking import Ranking
 
 
 def compare(
@@ -54,7 +52,7 @@ def compare(
         print(_relit_json(found) if as_json else _relit_table(found, relight))
         return
     entries = _compared(scene, chosen, text.size(size), rays, radius, buffer, output, flip)
-    print(json.dumps([one.to_dict() for one in entries], indent=2, allow_nan=False) if as_json else _table(entries))
+    print(json.dumps([one.to_dict() for one in entries], indent=2, allow_nan=False) if as_json else entries)
 
 
 def _compared(
@@ -66,7 +64,7 @@ def _compared(
     buffer: str,
     output: Path | None,
     flip: bool,
-) -> "list[Entry]":
+) -> "Ranking":
     from ..extras import need
     from ..output import replacing
     from ..studies.ranking import compare_modules, sheet
@@ -80,17 +78,6 @@ def _compared(
         with replacing(output) as file:
             sheet(entries).save(file, "PNG")
     return entries
-
-
-def _table(entries: "list[Entry]") -> str:
-    from ..table import table
-
-    columns = {"": "", **dict.fromkeys(MEASURES, ".4f"), "frame ms": ".1f"}
-    rows = []
-    for entry in entries:
-        one = next(iter(entry.comparison.buffers.values()))
-        rows.append([entry.label, *(getattr(one, name) for name in MEASURES), entry.milliseconds])
-    return table(columns, rows)
 
 
 def _relit(

@@ -13,6 +13,7 @@ from ..gl.texture import Size
 from ..loading import load
 from ..measures.comparison import Comparison, compare
 from ..modules import MODULES, Module, find
+from ..pictures import html
 from ..pipeline.api import shared_lab
 from ..progress import progress_bar
 from ..scene.camera import Camera
@@ -23,6 +24,7 @@ from ..truth import reference
 DEFAULT_SIZE = (480, 270)
 REPEATS = 3  # warm frames; the time of a frame is their median
 Modules = str | Module | type[Module] | Iterable[str | Module | type[Module]]
+MEASURES = ("rmse", "bias", "p99", "ssim", "flip")  # of the table
 _ON_SHEET = ("rmse", "bias", "p99", "psnr", "ssim", "flip", "angle")
 
 
@@ -39,6 +41,13 @@ class Entry:
     milliseconds: float
     info: dict[str, Any]
 
+    def __repr__(self) -> str:
+        one = _only(self)
+        return f"<Entry {self.label}: {one.name} rmse {one.rmse:.4g}, {self.milliseconds:.1f} ms>"
+
+    def _repr_html_(self) -> str:
+        return self.comparison._repr_html_()
+
     def to_dict(self) -> dict[str, Any]:
         """Plain numbers for JSON."""
         return {
@@ -49,6 +58,24 @@ class Entry:
             **self.info,
             **self.comparison.to_dict(),
         }
+
+
+class Ranking(list[Entry]):
+    """The entries of `compare_modules`, the least error first: a list that prints as a table of measures.
+
+    In a notebook it shows the table and the `sheet`.
+    """
+
+    def _rows(self) -> list[list[Any]]:
+        return [[one.label, *(getattr(_only(one), name) for name in MEASURES), one.milliseconds] for one in self]
+
+    def __repr__(self) -> str:
+        return table({"": "", **dict.fromkeys(MEASURES, ".4f"), "frame ms": ".1f"}, self._rows())
+
+    def _repr_html_(self) -> str:
+        rows = [[row[0], *(f"{number:.4f}" for number in row[1:-1]), f"{row[-1]:.1f}"] for row in self._rows()]
+        picture = html.img(sheet(self), "A row for each module: result, truth, error and numbers") if self else ""
+        return html.table(("module", *MEASURES, "frame ms"), rows) + picture
 
 
 def compare_modules(
@@ -63,7 +90,7 @@ def compare_modules(
     seed: int = 0,
     accumulate: int = 1,
     flip: bool = True,
-) -> list[Entry]:
+) -> Ranking:
     """Render `scene` with each of `modules` (default: all), compare `buffer` with the truth, and sort by RMSE.
 
     The least error comes first. A module is compared with a reference of its own radius and falloff, a module without a
@@ -96,7 +123,7 @@ def compare_modules(
             info = {"scene": scene.source or scene.name, "rays": rays, "renderer": frame.info["renderer"]}
             entries.append(Entry(label(module, scene), module, comparison, statistics.median(again), info))
             bar.update()
-    return sorted(entries, key=lambda entry: entry.comparison[buffer].rmse)
+    return Ranking(sorted(entries, key=lambda entry: entry.comparison[buffer].rmse))
 
 
 def sheet(entries: Sequence[Entry], *, limit: float | None = None) -> Image.Image:

@@ -7,17 +7,6 @@
 #include "occluders/surfaces.glsl"
 #include "lib/relief.glsl"
 
-// the camera's depth, under names of its own
-#define Occluder DepthOccluder
-#define isBlocked isBehindDepth
-#define occluderNormal depthNormal
-#define occluderRadiance depthRadiance
-#include "occluders/depth.glsl"
-#undef Occluder
-#undef isBlocked
-#undef occluderNormal
-#undef occluderRadiance
-
 const bool depth_too;
 
 const float ROUNDING = 2e-3;   // of normals to half floats: the slope below which a plane does not block itself
@@ -37,7 +26,7 @@ struct Occluder {
     vec3 viewPos;
     vec3 normal;
     bool inRelief;
-    DepthOccluder behind;
+    vec2 uv;
 };
 
 // Is the view-space point `samplePos` blocked for the receiver, and by what? The relief comes first.
@@ -62,21 +51,22 @@ bool isBlocked(Receiver receiver, vec3 samplePos, float thickness, out Occluder 
         occluder.viewPos = surfacePos + offset + off * (obstacle - above);
         vec2 slope = slopeAt(number, there);
         occluder.normal = normalize(off - byV.w * (slope.x * byU.xyz + slope.y * byV.xyz));
-        occluder.behind.uv = pixelAt(samplePos - off * above, pixel_from_ray) * texel_size;
+        occluder.uv = pixelAt(samplePos - off * above, pixel_from_ray) * texel_size;
         samplePos += off * max(rise, 0.0);    // for other surfaces the receiver stands as high as its relief
     }
     if (occluder.inRelief || !depth_too) return occluder.inRelief;
-    bool blocked = isBehindDepth(receiver, samplePos, thickness, occluder.behind);
-    occluder.viewPos = occluder.behind.viewPos;
-    return blocked;
+    occluder.uv = pixelAt(samplePos, pixel_from_ray) * texel_size;   // as in depth.glsl, which a product may include, too
+    float behindZ = texture(viewZ, occluder.uv).r;
+    occluder.viewPos = onRayOf(samplePos, behindZ);
+    return abs(behindZ - samplePos.z - 0.5 * thickness) < 0.5 * thickness;
 }
 
 // The occluder's unit normal, view space.
 vec3 occluderNormal(Occluder occluder) {
-    return occluder.inRelief ? occluder.normal : depthNormal(occluder.behind);
+    return occluder.inRelief ? occluder.normal : texture(viewNormal, occluder.uv).xyz;
 }
 
 // The light that leaves the occluder.
 vec3 occluderRadiance(Occluder occluder) {
-    return depthRadiance(occluder.behind);
+    return texture(sender, occluder.uv).rgb;
 }

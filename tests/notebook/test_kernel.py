@@ -1,5 +1,6 @@
 """A real Jupyter kernel: callbacks in a subshell's thread render, and Tab completes names."""
 
+import json
 from collections.abc import Callable, Iterator
 
 import pytest
@@ -79,3 +80,41 @@ def test_tab_completes(kernel, run, before, offered, not_offered):
     matches = [match.strip("\"'])") for match in answer["content"]["matches"]]
     assert set(offered) <= set(matches)
     assert not set(not_offered) & set(matches)
+
+
+INTERACT = """
+import threading
+import aolab, ipywidgets
+lab, seen = aolab.Lab((32, 18)), []
+
+@ipywidgets.interact(power=(0.5, 4.0))
+def draw(power=1.0):
+    frame = lab.render("boxes", "ssao", power=power)
+    seen.append((power, frame["visibility"][frame.mask].mean(), threading.current_thread().name))
+    return frame
+
+print(draw.widget.children[0].model_id)
+"""
+
+
+def test_a_slider_of_interact_renders(kernel, run, subshell):
+    pytest.importorskip("ipywidgets")
+    slider = run(INTERACT).strip().splitlines()[-1]
+    for value in (2.0, 4.0):  # as JupyterLab does when the handle moves
+        data = {"method": "update", "state": {"value": value}, "buffer_paths": []}
+        message = kernel.session.msg("comm_msg", {"comm_id": slider, "data": data})
+        message["header"]["subshell_id"] = subshell
+        kernel.shell_channel.send(message)
+        while True:
+            answer = kernel.get_iopub_msg(timeout=60)
+            if answer["parent_header"].get("msg_id") == message["header"]["msg_id"]:
+                assert answer["msg_type"] != "error", answer["content"]["evalue"]
+                if answer["msg_type"] == "stream":
+                    raise AssertionError(answer["content"]["text"])  # interact prints a traceback of the callback
+                if answer["content"].get("execution_state") == "idle":
+                    break
+    powers, means, threads = zip(*json.loads(run("import json; print(json.dumps(seen, default=float))")), strict=True)
+    assert powers == (1.0, 2.0, 4.0)
+    assert means[0] > means[1] > means[2]
+    assert threads[0] == "MainThread"
+    assert threads[-1].startswith("subshell")

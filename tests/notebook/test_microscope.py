@@ -9,6 +9,8 @@ import aolab
 from aolab import Camera, DirectionalLight, Environment, ParameterError
 from aolab.modules import MODULES
 from aolab.modules.marched import Marched
+from aolab.modules.occluders import OCCLUDERS, Depth, Height, Product, Voxels
+from aolab.notebook.blocking import TWINS
 
 CASES = [
     ("ssao", {}),
@@ -16,6 +18,9 @@ CASES = [
     ("ssao", {"occluders": "layers"}),
     ("ssao", {"occluders": "views"}),
     ("ssao", {"occluders": "views", "view_layers": 2}),
+    ("ssao", {"occluders": "voxels", "voxels": 64, "steps": 8}),
+    ("ssdo", {"occluders": "voxels", "voxels": 32}),
+    ("ssao", {"occluders": Product(first=Depth(), second=Voxels(voxels=64))}),
     ("ssdo", {"scale": 0.5}),
     ("ssdo", {"estimator": "plain"}),
     ("ssdo", {"occluders": "layers", "bounces": 1}),
@@ -46,6 +51,23 @@ def test_the_replay_is_the_shader(lab, boxes, module, parameters):
     seen = [aolab.microscope(frame, pixel) for pixel in pixels(frame, 60)]
     assert max(one.difference for one in seen) <= 1e-3
     assert any(one.sets[0].blocked.any() for one in seen)
+
+
+def test_every_kind_of_occluders_has_a_twin():
+    assert set(TWINS) == set(OCCLUDERS.values())
+
+
+@pytest.mark.parametrize(
+    "occluders",
+    [Height(), Height(depth_too=False), Product(first=Depth(), second=Height())],
+    ids=lambda kind: repr(kind.model_dump()),
+)
+@pytest.mark.parametrize("settings", [{}, {"normals": "geometric"}], ids=str)
+def test_samples_of_a_relief_are_replayed(lab, occluders, settings):
+    frame = lab.render("relief", "ssao", size=(96, 64), radius=0.3, steps=8, occluders=occluders, **settings)
+    seen = [aolab.microscope(frame, pixel) for pixel in pixels(frame, 60)]
+    assert max(one.difference for one in seen) <= 1e-3
+    assert np.mean([one.sets[0].blocked.any() for one in seen]) > 0.3
 
 
 def test_accumulated_sets_are_replayed(lab, boxes):

@@ -1,6 +1,13 @@
 """`aolab sweep` and `aolab animate`: the listing, the table, the exit status, the errors."""
 
 import json
+import os
+import re
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -18,8 +25,14 @@ directions = [4, {last}]
 """
 
 
+PAGE = (Path(__file__).parents[2] / "docs" / "sweeps.md").read_text(encoding="utf-8").partition("## On a cluster")[2]
+BLOCKS = re.findall(r"^```sh\n(.*?)^```", PAGE, re.MULTILINE | re.DOTALL)
+
+
 @pytest.fixture
-def spec(tmp_path):
+def spec(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+
     def write(last: int) -> str:
         (tmp_path / "spec.toml").write_text(SPEC.format(last=last))
         return "spec.toml"
@@ -47,6 +60,72 @@ def test_shards_then_the_table(aolab, spec):
     rows = json.loads(done.out)
     assert len(rows) == len(pd.read_parquet("out/sweep.parquet")) == 4
     assert all(0 < row["visibility.mean"] < 1 for row in rows)
+
+
+@pytest.fixture
+def shell(tmp_path) -> Callable[..., subprocess.Popen[str]]:
+    """Starts lines of a page in bash, where `aolab` and `dask` are those of this Python."""
+    commands = tmp_path / "commands"
+    commands.mkdir()
+    for name, code in {
+        "aolab": "from aolab.shell.cli import main; main()",
+        "dask": "from dask.cli import run_cli; run_cli()",
+    }.items():
+        (commands / name).write_text(f"#!/bin/sh\nexec '{sys.executable}' -c '{code}' \"$@\"\n")
+        (commands / name).chmod(0o755)
+    path = os.pathsep.join([str(commands), os.environ["PATH"]])
+
+    def start(lines: str, **variables: str) -> subprocess.Popen[str]:
+        package = str(Path(__file__).parents[2])
+        environment = {**os.environ, "PATH": path, "PYTHONPATH": package, **variables}
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+        return subprocess.Popen(
+            ["bash", "-ec", f"exec {lines}" if "\n" not in lines else lines], env=environment, **streams
+        )
+
+    return start
+
+
+@contextmanager
+def running(process: subprocess.Popen[str]) -> Iterator[None]:
+    try:
+        yield
+    finally:
+        process.terminate()
+        process.communicate(timeout=60)
+
+
+@pytest.mark.slow
+def test_the_pages_dask_cluster(shell, spec):
+    pytest.importorskip("distributed")
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    block = BLOCKS[0].replace("8786", str(port)).replace("HOST", "127.0.0.1").replace("sweep.toml", spec(8))
+    lines = [line.partition(" #")[0].strip() for line in block.splitlines()]
+    scheduler, worker, sweep = (line.removeprefix("LP_NUM_THREADS=1 ") for line in lines)
+    with running(shell(f"{scheduler} --dashboard-address :0")), running(shell(worker, LP_NUM_THREADS="1")):
+        done = shell(sweep)
+        output, _ = done.communicate(timeout=120)
+    assert done.returncode == 0, output
+    assert "4 of 4 cases succeeded" in output
+    assert len(pd.read_parquet("out/sweep.parquet")) == 4
+
+
+@pytest.mark.slow
+def test_the_pages_job_array(shell, spec):
+    job, last = (block.replace("sweep.toml", spec(8)).replace("/40", "/3") for block in BLOCKS[1:])
+    assert "#SBATCH --array=0-39" in job
+    for task in range(3):
+        done = shell(job, SLURM_ARRAY_TASK_ID=str(task))
+        output, _ = done.communicate(timeout=120)
+        assert done.returncode == 0, output
+        assert not Path("out/sweep.parquet").exists()
+    written = {path: path.stat().st_mtime_ns for path in Path("out/records").iterdir()}
+    done = shell(last.strip())
+    assert "4 of 4 cases succeeded" in done.communicate(timeout=120)[0]
+    assert {path: path.stat().st_mtime_ns for path in Path("out/records").iterdir()} == written
+    assert len(pd.read_parquet("out/sweep.parquet")) == 4
 
 
 def test_a_failed_case_is_named_and_the_status_is_1(aolab, spec):

@@ -27,6 +27,18 @@ def test_the_best_comes_first(entries):
     assert all(entry.milliseconds > 0 for entry in entries)
 
 
+def test_the_ranking_shows_itself(entries):
+    lines = repr(entries).splitlines()
+    assert lines[0].split() == ["rmse", "bias", "p99", "ssim", "flip", "frame", "ms"]
+    assert [line.split("  ")[0] for line in lines[1:]] == [entry.label for entry in entries]
+    assert f"{entries[0].comparison['visibility'].rmse:.4f}" in lines[1]
+    html = entries._repr_html_()
+    assert all("<td" in html and entry.label in html for entry in entries)
+    assert html.count("<img") == 1
+    assert repr(entries[-1]).startswith("<Entry none: visibility rmse 0.")
+    assert "truth | result" in entries[0]._repr_html_()
+
+
 def test_labels_name_what_was_changed(entries):
     labels = {entry.label for entry in entries}
     assert labels == {"none", "ssao radius=0.4", "ssao radius=0.4 directions=64 steps=16"}

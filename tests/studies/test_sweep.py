@@ -79,6 +79,17 @@ def test_a_parameter_of_an_occluder_kind_belongs_to_the_cases_with_that_kind():
         aolab.sweep("boxes", "ssao", layers=[2, 3], reference=False, size=(48, 32))
 
 
+def test_scenes_and_modules_of_one_name_are_told_apart(boxes):
+    lower = boxes.replace(environment=aolab.Environment.constant((0.1, 0.1, 0.1)))
+    modules = [aolab.SSAO(steps=2), aolab.SSAO(steps=4, radius=0.5), "ssdo"]
+    table = aolab.sweep([boxes, lower], modules, size=(32, 18), measures=["ambient.mean"], reference=False)
+    name = boxes.source or boxes.name
+    assert list(table["scene"].unique()) == [name, f"{name} (2)"]
+    assert set(table["module"]) == {"ssao?steps=2", "ssao?radius=0.5", "ssdo"}  # 4 steps are the default
+    first, second = (table[table["scene"] == scene]["ambient.mean"].to_numpy() for scene in table["scene"].unique())
+    assert (first > second).all()
+
+
 def test_measures_by_region_of_the_frame_alone_and_of_ones_own():
     def dark(frame: aolab.Frame) -> float:
         return float((frame["visibility"][frame.mask] < 0.5).mean())

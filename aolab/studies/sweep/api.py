@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from ...gl import context
 from ...version import __version__
 from . import schedule
-from .case import Settings, module_name, scene_name
+from .case import Settings
 from .plan import Plan, as_list, cameras_of, check_scenes, draw_of, measures_of, sizes_of
 from .records import Records
 
@@ -109,8 +109,8 @@ def description(plan: Plan) -> dict[str, Any]:
     return {
         "aolab": __version__,
         "renderer": context.renderer(),
-        "scenes": [scene_name(scene) for scene in plan.scenes],
-        "modules": [module_name(module) for module in plan.modules],
+        "scenes": plan.scene_labels,
+        "modules": plan.module_labels,
         "rays": plan.settings.rays if plan.settings.reference else 0,
         "inputs": inputs,
         "measures": [one if isinstance(one, str) else one.__name__ for one in plan.settings.measures],

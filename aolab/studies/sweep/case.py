@@ -48,7 +48,10 @@ class Settings:
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """One point of the sweep. `scene` is anything that `aolab.load` takes; `parameters` are the module's, as given."""
+    """One point of the sweep. `scene` is anything that `aolab.load` takes; `parameters` are the module's, as given.
+
+    The labels stand in the table where several scenes or modules of the sweep have one name.
+    """
 
     scene: Any
     module: str | Module | type[Module]
@@ -58,14 +61,16 @@ class Case:
     accumulate: int = 1
     camera: Camera | None = None
     camera_name: str = ""
+    scene_label: str = ""
+    module_label: str = ""
 
     @property
     def columns(self) -> dict[str, Any]:
         """The inputs as plain values, a column each."""
         named = {"camera": self.camera_name} if self.camera_name else {}
         return {
-            "scene": scene_name(self.scene),
-            "module": module_name(self.module),
+            "scene": self.scene_label or scene_name(self.scene),
+            "module": self.module_label or module_name(self.module),
             "width": self.size[0],
             "height": self.size[1],
             "seed": self.seed,
@@ -80,8 +85,8 @@ class Case:
         parameters = " ".join(f"{name}={value}" for name, value in self.parameters.items())
         camera = f" camera={self.camera_name}" if self.camera_name else ""
         width, height = self.size
-        place = f"{scene_name(self.scene)} {module_name(self.module)} {width}x{height} seed={self.seed}{camera}"
-        return f"{place} {parameters}".strip()
+        names = f"{self.columns['scene']} {self.columns['module']}"
+        return f"{names} {width}x{height} seed={self.seed}{camera} {parameters}".strip()
 
 
 def scene_name(scene: Any) -> str:
@@ -201,7 +206,7 @@ def traced(case: Case, settings: Settings, cache: bool = True) -> Frame:
 
 def question(case: Case, settings: Settings) -> tuple[Any, ...]:
     """The cases that agree in this share a truth; cases that agree in its beginning share a G-buffer."""
-    surfaces = scene_name(case.scene), case.camera_name, repr(case.camera), case.size
+    surfaces = case.columns["scene"], case.camera_name, repr(case.camera), case.size
     if not settings.reference:
         return surfaces
     try:

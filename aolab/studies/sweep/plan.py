@@ -3,6 +3,7 @@
 import itertools
 import tomllib
 import warnings
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,7 +16,7 @@ from ...gl.texture import Size, check_size
 from ...modules import MODULES, Module, find
 from ...modules.parameters import Choice
 from ...scene.camera import Camera
-from .case import Case, Settings, loaded, module_name, question
+from .case import Case, Settings, loaded, module_name, question, scene_name
 from .measured import Measure, default, needs_truth, parse
 
 DISTRIBUTIONS = ("uniform", "loguniform", "integers", "choice")
@@ -124,6 +125,29 @@ class Plan:
             raise ParameterError(f"sweep: sampler = '{self.sampler}'{suggestion(self.sampler, ('sobol', 'uniform'))}")
         return [{name: self.random[name].at(float(u)) for name, u in zip(names, row, strict=True)} for row in units]
 
+    @property
+    def scene_labels(self) -> list[str]:
+        """The scenes as the table shows them: of several with one name, the second is `NAME (2)`."""
+        labels: dict[Any, str] = {}
+        count = Counter[str]()
+        for scene in self.scenes:
+            name, key = scene_name(scene), _key(scene)
+            if key not in labels:
+                count[name] += 1
+                labels[key] = name if count[name] == 1 else f"{name} ({count[name]})"
+        return [labels[_key(scene)] for scene in self.scenes]
+
+    @property
+    def module_labels(self) -> list[str]:
+        """The modules as the table shows them: of several with one name, with the parameters that differ from the
+        defaults, as in `ssao?steps=8`.
+        """
+        names = [module_name(module) for module in self.modules]
+        return [
+            name if names.count(name) == 1 or isinstance(module, (str, type)) else f"{name}{_changes(module)}"
+            for name, module in zip(names, self.modules, strict=True)
+        ]
+
     def cases(self) -> list[Case]:
         """All cases, without repeats. Cases that share a truth are neighbours; so are those that share a G-buffer.
 
@@ -131,12 +155,15 @@ class Plan:
         """
         found: dict[str, Case] = {}
         points = self.points()
-        for scene, size, (camera_name, camera), module in itertools.product(
-            self.scenes, self.sizes, self.cameras.items(), self.modules
+        scenes = zip(self.scenes, self.scene_labels, strict=True)
+        modules = list(zip(self.modules, self.module_labels, strict=True))
+        for (scene, scene_label), size, (camera_name, camera), (module, module_label) in itertools.product(
+            scenes, self.sizes, self.cameras.items(), modules
         ):
+            labels = scene_label, module_label
             for values in (taken(module, point) for point in points):
                 for seed in self.seeds:
-                    case = Case(scene, module, values, size, seed, self.accumulate, camera, camera_name)
+                    case = Case(scene, module, values, size, seed, self.accumulate, camera, camera_name, *labels)
                     key = repr((id(scene), id(module), size, camera_name, seed, sorted(values.items(), key=repr)))
                     found.setdefault(key, case)
         for name in points[0]:
@@ -161,6 +188,18 @@ def taken(module: str | Module | type[Module], point: Mapping[str, Any]) -> dict
         return owner.name == (chosen if isinstance(chosen, str) else chosen.name)
 
     return {name: value for name, value in point.items() if is_taken(name)}
+
+
+def _key(scene: Any) -> Any:
+    """A name for itself, and the identity of any other object."""
+    return str(scene) if isinstance(scene, (str, Path)) else id(scene)
+
+
+def _changes(module: Module) -> str:
+    """The parameters that differ from the defaults, as `aolab.render` takes them behind a name: `?steps=8&bias=0`."""
+    defaults = type(module)().model_dump()
+    changed = [f"{name}={value}" for name, value in module.model_dump().items() if value != defaults.get(name)]
+    return f"?{'&'.join(changed)}" if changed else ""
 
 
 def _owner(modules: Sequence[str | Module | type[Module]], name: str) -> str:

@@ -80,7 +80,7 @@ def run(
                 bar.update()
                 if on_error == "raise" and record["status"] != "ok":
                     raise Error(f"sweep: {wanted[name].title}: {record['error']}")
-    return [known[name] for name, _ in named]
+    return [{**known[name], **one.plain(case.columns)} for name, case in named]  # another sweep may name it otherwise
 
 
 def _here(cases: dict[str, Case], settings: Settings) -> Generator[Result]:
