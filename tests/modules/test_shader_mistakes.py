@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 import aolab
+from aolab.gl import context
 from aolab.gl.report import told
 from aolab.gl.source import assemble
 from aolab.modules.marched import Marched
@@ -40,13 +41,16 @@ def message_of(kind: str, code: str) -> str:
 
 
 def comparable(message: str) -> list[str]:
-    """The lines of a message; those in the driver's words without these, and numbers without their last digits."""
+    """The lines of a message, without the driver's own words, the number of files, and the last digits of numbers."""
     lines = [line.partition(" error: ")[0] for line in message.strip().splitlines()]
+    lines = [re.sub(r"and \d+ more", "and more", line) for line in lines]
     return [re.sub(r"\b\d+\.\d+", lambda number: f"{float(number[0]):.1f}", line) for line in lines]
 
 
 @pytest.mark.parametrize("title", CASES)
-def test_the_pages_example_gives_the_pages_message(title):
+def test_the_pages_example_gives_the_pages_message(gl, title):
+    if "llvmpipe" not in context.renderer():
+        pytest.skip("the page has the messages of Mesa")
     kind, code, message = CASES[title]
     assert comparable(message_of(kind, code)) == comparable(message)
 
