@@ -19,6 +19,7 @@ uniform float radius;     // scene units
 uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform float strength;
+uniform float scale;      // of the image's resolution
 uniform vec3 line_start;  // of lib/line.glsl
 uniform vec4 ray_from_pixel;
 uniform sampler2D facetNormal;  // of the triangle, unit, view space
@@ -43,7 +44,9 @@ void main() {
 
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, facet = texelFetch(facetNormal, pixel, 0).xyz;
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    Receiver receiver = receiverAt(pixel, surfacePos + facet * (bias * radius), normal, facet, texel_size);
+    // the depths of peeled layers are as fine as the image: at a lower resolution, pixels' centres are not their centres
+    float lift = scale < 1.0 ? liftOff(bias * radius, radius, surfacePos, ray_from_pixel) : bias * radius;
+    Receiver receiver = receiverAt(pixel, surfacePos + facet * lift, normal, facet, texel_size);
     Line line = lineOf(receiver.set, line_start);
     // pixels a radius, at the receiver's depth
     float reachPx = radius * pixel_from_ray.x / (orthographic ? 1.0 : -centreZ);
