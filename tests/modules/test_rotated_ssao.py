@@ -63,3 +63,13 @@ def test_strength_scales_the_occlusion(lab, wall):
 def test_its_rays_have_its_radius(boxes):
     question = aolab.modules.RotatedSSAO(radius=0.7).question()  # pyright: ignore[reportAttributeAccessIssue]
     assert (question.radius, question.falloff) == (0.7, 0.0)
+
+
+@pytest.mark.parametrize("occluders", ["depth", "layers"])
+def test_a_lower_resolution_does_not_darken(lab, boxes, occluders):
+    """Peeled layers are as fine as the image, so that a coarse pixel's centre is on no layer's centre."""
+    fine, coarse = (
+        np.nanmean(lab.render(boxes, "rotated_ssao", radius=1.0, occluders=occluders, scale=scale)["visibility"])
+        for scale in (1.0, 0.5)
+    )
+    assert coarse == pytest.approx(fine, abs=0.015)
