@@ -65,6 +65,7 @@ def test_its_rays_have_its_radius(boxes):
     assert (question.radius, question.falloff) == (0.7, 0.0)
 
 
+@pytest.mark.filterwarnings("ignore::aolab.Notice")  # the floor is not closed
 @pytest.mark.parametrize("occluders", ["depth", "layers"])
 def test_a_lower_resolution_does_not_darken(lab, boxes, occluders):
     """Peeled layers are as fine as the image, so that a coarse pixel's centre is on no layer's centre."""
@@ -72,4 +73,4 @@ def test_a_lower_resolution_does_not_darken(lab, boxes, occluders):
         np.nanmean(lab.render(boxes, "rotated_ssao", radius=1.0, occluders=occluders, scale=scale)["visibility"])
         for scale in (1.0, 0.5)
     )
-    assert coarse == pytest.approx(fine, abs=0.015)
+    assert fine - 0.01 < coarse < fine + 0.03
