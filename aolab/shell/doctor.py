@@ -32,7 +32,7 @@ def examine() -> dict[str, Any]:
 
     from ..errors import ContextError
     from ..extras import EXTRAS, install_command, is_installed
-    from ..gl import context
+    from ..gl import context, egl
     from ..version import __version__
 
     findings: dict[str, Any] = {
@@ -40,7 +40,7 @@ def examine() -> dict[str, Any]:
         "python": platform.python_version(),
         "platform": platform.platform(),
         "libraries": {name: importlib.metadata.version(name) for name in _LIBRARIES},
-        "devices": context.devices(),
+        "devices": egl.devices(),
         "renders": False,
         "remedies": [],
     }

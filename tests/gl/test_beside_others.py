@@ -46,6 +46,7 @@ def test_a_context_of_moderngl_before_ours(python):
 
 
 def test_a_renderer_of_pyrender_beside_ours(python):
+    """Its `delete` ends EGL's display, which once ended our context."""
     pytest.importorskip("pyrender", reason="pyrender is an extra", exc_type=Exception)
     done = python("""
     import aolab, numpy as np, pyrender, trimesh
@@ -61,9 +62,7 @@ def test_a_renderer_of_pyrender_beside_ours(python):
     assert np.array_equal(first.image, second.image)
     assert abs(renderer.render(scene)[1].max() - 2.5) < 0.1
     renderer.delete()
-    try:
-        aolab.render(scene, "ssao", size=(32, 24))
-    except aolab.ContextError as error:
-        assert "OffscreenRenderer.delete()" in str(error)
+    assert np.array_equal(aolab.render(scene, "ssao", size=(32, 24)).image, first.image)
+    assert np.array_equal(first["albedo"], second["albedo"])  # read late, of a frame made before
     """, PYOPENGL_PLATFORM="egl")  # fmt: skip
     assert done.returncode == 0, done.stderr

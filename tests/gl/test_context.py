@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from aolab import ContextError
-from aolab.gl import context
+from aolab.gl import context, egl
 
 RENDER = """
 import numpy as np, trimesh
@@ -126,7 +126,7 @@ def test_the_process_ends_quietly_with_frames_and_a_lab_alive(python):
 
 
 def test_devices_are_listed_and_the_software_one_is_known(gl):
-    devices = context.devices()
+    devices = egl.devices()
     assert devices
     assert all(name == "software" or name.startswith("hardware") for name in devices)
     if context.is_software():
@@ -135,14 +135,14 @@ def test_devices_are_listed_and_the_software_one_is_known(gl):
 
 def test_hardware_is_preferred(monkeypatch):
     monkeypatch.delenv("AOLAB_DEVICE", raising=False)
-    monkeypatch.setattr(context, "devices", lambda: ["software", "hardware /dev/dri/card0", "hardware"])
+    monkeypatch.setattr(egl, "devices", lambda: ["software", "hardware /dev/dri/card0", "hardware"])
     assert context._preferred_devices() == [1, 2, 0]
-    monkeypatch.setattr(context, "devices", list)
+    monkeypatch.setattr(egl, "devices", list)
     assert context._preferred_devices() == [0]
 
 
 def test_a_chosen_device_is_used_and_no_other(monkeypatch):
-    monkeypatch.setattr(context, "devices", lambda: ["hardware", "software"])
+    monkeypatch.setattr(egl, "devices", lambda: ["hardware", "software"])
     monkeypatch.setenv("AOLAB_DEVICE", "1")
     assert context._preferred_devices() == [1]
 
