@@ -18,6 +18,7 @@ in vec3 viewNormal;
 in vec2 uv;
 in vec4 color;
 flat in float winding;
+flat in float instance;
 
 out vec4 rsm_position;
 out vec4 rsm_normal;
@@ -26,7 +27,7 @@ out float rsm_depth;
 
 void main() {
     vec4 base = baseColor(uv, color);
-    if (isHole(base.a, uv, winding)) discard;
+    if (isHole(base.a, uv, winding, instance)) discard;
     int size = int(texelFetch(rsm_table, ivec2(4, 0), 0).z);
     vec4 about = texelFetch(rsm_table, ivec2(4, int(gl_FragCoord.x) / size), 0);
     int light = int(about.x);

@@ -22,6 +22,7 @@ MESH_UNIFORMS: dict[str, object] = {
     "blended": False,
     "mesh_number": 0.0,
     "single_sided": False,
+    "has_shares": False,
     "emission": (0.0, 0.0, 0.0),
     "normal_scale": 1.0,
     "normal_mapped": False,
@@ -49,7 +50,7 @@ def kinds_of(scene: Scene) -> dict[str, Constant]:
 class _GpuMesh:
     attributes: moderngl.Buffer  # position 3f, normal 3f, uv 2f, colour 4f, baked visibility 1f
     indices: moderngl.Buffer
-    instances: moderngl.Buffer
+    instances: moderngl.Buffer  # world_from_local 16f, number 1f
     placement: bytes
     tangents: moderngl.Buffer | None = None  # 4f; made when a program reads them
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)  # by program
@@ -82,17 +83,18 @@ class Geometry:
     def _place(self, mesh: Mesh, placements: list[Instance], centre: np.ndarray) -> _GpuMesh:
         placed = np.array([instance.world_from_local for instance in placements])
         placed[:, :3, 3] -= centre
-        matrices = placed.transpose(0, 2, 1).astype(np.float32).tobytes()  # GLSL stores them column by column
+        columns = placed.transpose(0, 2, 1).reshape(-1, 16)  # GLSL stores matrices column by column
+        rows = np.column_stack([columns, np.arange(len(columns))]).astype(np.float32).tobytes()
         gpu = self._meshes.get(mesh)
         if gpu is None:
-            gpu = self._meshes[mesh] = self._upload(mesh, matrices)
-        elif gpu.placement != matrices:
-            gpu.instances.orphan(len(matrices))
-            gpu.instances.write(matrices)
-            gpu.placement = matrices
+            gpu = self._meshes[mesh] = self._upload(mesh, rows)
+        elif gpu.placement != rows:
+            gpu.instances.orphan(len(rows))
+            gpu.instances.write(rows)
+            gpu.placement = rows
         return gpu
 
-    def _upload(self, mesh: Mesh, matrices: bytes) -> _GpuMesh:
+    def _upload(self, mesh: Mesh, placement: bytes) -> _GpuMesh:
         gl = context.get()
         assert mesh.normals is not None  # Mesh makes them
         count = len(mesh.vertices)
@@ -100,7 +102,7 @@ class Geometry:
         colors = np.ones((count, 4), np.float32) if mesh.colors is None else mesh.colors
         baked = np.ones((count, 1), np.float32) if mesh.visibility is None else mesh.visibility
         interleaved = np.concatenate([mesh.vertices, mesh.normals, uv, colors, baked], axis=1, dtype=np.float32)
-        gpu = _GpuMesh(gl.buffer(interleaved), gl.buffer(mesh.faces), gl.buffer(matrices), matrices)
+        gpu = _GpuMesh(gl.buffer(interleaved), gl.buffer(mesh.faces), gl.buffer(placement), placement)
         refuse_exhaustion(f"mesh '{mesh.name}' of {interleaved.nbytes / 1e6:.0f} MB")
         return gpu
 
@@ -109,7 +111,7 @@ class Geometry:
         if key not in gpu.arrays:
             content = [
                 (gpu.attributes, "3f 3f 2f 4f 1f", *ATTRIBUTES),
-                (gpu.instances, "16f/i", "world_from_local"),
+                (gpu.instances, "16f 1f/i", "world_from_local", "instance_number"),
             ]
             if "local_tangent" in program.gl:
                 if gpu.tangents is None:
@@ -127,6 +129,7 @@ class Geometry:
             "blended": material.blend,
             "mesh_number": float(number),
             "single_sided": not material.double_sided,
+            "has_shares": material.texture is not None and material.texture.mipmaps,
             "emission": material.emission,
             "normal_scale": material.normal_scale,
             "normal_mapped": material.normal_texture is not None,

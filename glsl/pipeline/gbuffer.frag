@@ -50,6 +50,7 @@ in vec4 tangent;
 flat in float localScale;
 in float bakedVisibility;
 flat in float winding;
+flat in float instance;
 
 out float surfaceViewZ;
 out vec4 surfaceNormal;
@@ -103,7 +104,7 @@ vec3 bentNormal(vec3 normal, vec3 byU, vec3 byV) {
 void main() {
     vec4 base = baseColor(uv, color);
     // peeling needs the backs of solids, be they single-sided
-    if (isHole(base.a, uv, peel ? 0.0 : winding)) discard;
+    if (isHole(base.a, uv, peel ? 0.0 : winding, instance)) discard;
     if (peel && viewPos.z >= texelFetch(nearerZ, ivec2(gl_FragCoord.xy), 0).r) discard;
     // the triangle's own normal, towards the viewer; the vertices' winding need not be right for this, nor the sign of the
     // derivatives, which at a horizon reach over to what lies behind the eye

@@ -1,7 +1,6 @@
 // The camera's view of an instance.
-// Inputs: local-space vertices, world_from_local a instance.
-// Outputs: view-space position, normal and tangent, uv, colour.
-// Inputs: local-space vertices, world_from_local a instance. Outputs: view-space position and normal, uv, colour, baked visibility.
+// Inputs: local-space vertices, world_from_local and number of each instance.
+// Outputs: view-space position, normal and tangent, uv, colour, baked visibility.
 
 in vec3 local_position;
 in vec3 local_normal;
@@ -10,6 +9,7 @@ in vec4 vertex_color;
 in vec4 local_tangent;
 in float vertex_visibility;
 in mat4 world_from_local;
+in float instance_number;
 
 const bool bent_normals;
 
@@ -24,6 +24,7 @@ out vec4 tangent;          // view space, w the bitangent's sign; 0 without a ma
 flat out float localScale; // of the instance, so that heights grow with it
 out float bakedVisibility;
 flat out float winding;
+flat out float instance;   // the number of the mesh's instance
 
 void main() {
     vec4 position = view_from_world * (world_from_local * vec4(local_position, 1.0));
@@ -37,6 +38,7 @@ void main() {
     color = vertex_color;
     bakedVisibility = vertex_visibility;
     winding = sign(determinant(linear));
+    instance = instance_number;
     tangent = vec4(0.0);
     localScale = 1.0;
     if (bent_normals) {

@@ -5,7 +5,8 @@
 in vec2 uv;
 in float alpha;
 flat in float winding;
+flat in float instance;
 
 void main() {
-    if (isHole(baseColor(uv, vec4(alpha)).a, uv, winding)) discard;
+    if (isHole(baseColor(uv, vec4(alpha)).a, uv, winding, instance)) discard;
 }

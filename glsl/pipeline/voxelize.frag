@@ -93,7 +93,7 @@ void main() {
     vec3 nearest = clamp(weights.here, 1e-6, 1.0);
     nearest /= nearest.x + nearest.y + nearest.z;
     vec2 uv = nearest.x * cornerUv[0] + nearest.y * cornerUv[1] + nearest.z * cornerUv[2];
-    if (isHole(baseColor(uv, vec4(dot(nearest, cornerAlpha))).a, uv, 0.0)) discard;
+    if (isHole(baseColor(uv, vec4(dot(nearest, cornerAlpha))).a, uv, 0.0, 0.0)) discard;
     vec2 range = clamp(voxel_exact ? exactRange(weights) : planeRange(weights), -1.0, float(slices) + 1.0);
     int first = int(floor(range.x)), last = int(floor(range.y));
     for (int i = 0; i < targets; ++i) {

@@ -43,6 +43,32 @@ def test_a_cut_out_keeps_its_area_at_a_distance(lab, texels_a_pixel):
     assert frame.mask.sum() / seen == pytest.approx(0.25, abs=0.03)
 
 
+@pytest.mark.filterwarnings("ignore:nothing is drawn:aolab.Notice")
+@pytest.mark.parametrize(("alpha", "drawn"), [(0.7, 0.25), (0.3, 0.0)])
+@pytest.mark.parametrize("where", ["material", "vertices"])
+def test_the_alpha_of_the_rest_of_a_material_cuts_at_a_distance_as_it_does_from_near(lab, alpha, drawn, where):
+    """Alphas of 1 and 0 times 0.7 are over and under a cutoff of 0.5: no less of the blades is seen."""
+    material = Material((1, 1, 1), blades(1024), alpha_cutoff=0.5, alpha=alpha if where == "material" else 1.0)
+    scene = sheet(material, from_afar(6, 1024))
+    if where == "vertices":
+        mesh = scene.instances[0].mesh
+        colors = np.tile((1, 1, 1, alpha), (len(mesh.vertices), 1))
+        mesh = Mesh(mesh.vertices, mesh.faces, mesh.normals, mesh.uv, colors, material)
+        scene = scene.replace(instances=(Instance(mesh),))
+    frame = lab.render(scene, "none", size=(SIDE, SIDE))
+    assert frame.mask.mean() == pytest.approx(drawn, abs=0.03 if drawn else 0)
+
+
+@pytest.mark.parametrize("cutoff", [0.2, 0.9])
+def test_a_texture_without_smaller_levels_is_cut_at_its_cutoff_at_a_distance(lab, cutoff):
+    """A ramp of alpha: without mip levels, a pixel shows a texel, which is cut or not."""
+    pixels = np.full((256, 256, 4), 255, np.uint8)
+    pixels[..., 3] = np.random.default_rng(1).permutation(np.arange(256 * 256) % 256).reshape(256, 256)
+    material = Material((1, 1, 1), Texture(pixels, nearest=True, mipmaps=False), alpha_cutoff=cutoff)
+    frame = lab.render(sheet(material, from_afar(2.7, 256)), "none", size=(SIDE, SIDE))
+    assert frame.mask.sum() / (256 / 2.7) ** 2 == pytest.approx(1 - cutoff, abs=0.03)
+
+
 def test_a_cut_out_is_sharp_from_near(lab):
     material = Material((1, 1, 1), blades(), alpha_cutoff=0.5)
     frame = lab.render(sheet(material, from_afar(0.25)), "none", size=(SIDE, SIDE))
@@ -72,6 +98,25 @@ def test_blended_surfaces_behind_each_other_hide_other_pixels(lab):
     meshes = [small_scenes.quad((-1, -1, z), (2, 0, 0), (0, 2, 0), material) for z in (0, 1)]
     scene = Scene(tuple(map(Instance, meshes)), (), small_scenes.SKY, from_afar(2))
     assert share(lab.render(scene, "none", size=(SIDE, SIDE)), 2) == pytest.approx(0.75, abs=0.05)
+
+
+def test_instances_of_a_blended_mesh_hide_other_pixels(lab):
+    material = Material((1, 1, 1), alpha=0.5, blend=True)
+    pane = small_scenes.quad((-1, -1, 0), (2, 0, 0), (0, 2, 0), material)
+    deep = np.eye(4)
+    instances = []
+    for z in range(3):
+        deep[2, 3] = z
+        instances.append(Instance(pane, deep.copy()))
+    scene = Scene(tuple(instances), (), small_scenes.SKY, from_afar(2))
+    assert share(lab.render(scene, "none", size=(SIDE, SIDE)), 2) == pytest.approx(0.875, abs=0.05)
+
+
+def test_both_walls_of_a_blended_solid_hide(lab):
+    """A box of alpha 0.5: its near and its far wall leave a quarter open."""
+    box = small_scenes.box((-1, -1, -1), (1, 1, 1), Material((1, 1, 1), alpha=0.5, blend=True))
+    frame = lab.render(Scene((Instance(box),), (), small_scenes.SKY, from_afar(2)), "none", size=(SIDE, SIDE))
+    assert share(frame, 2) == pytest.approx(0.75, abs=0.05)
 
 
 @pytest.mark.parametrize(("alpha", "blend"), [(0.3, True), (1.0, False)])
