@@ -9,19 +9,31 @@ from ..errors import FileError, shorten
 from ..input import Budget, read_file
 
 _URL = re.compile(r"[a-z][a-z0-9+.-]*:", re.IGNORECASE)  # also the drive letter of a Windows path
+BEGINNING = 64  # bytes of a file that show its encoding
 UTF_16 = {codecs.BOM_UTF16_LE: "utf-16", codecs.BOM_UTF16_BE: "utf-16"}
 
 
 def decoded(data: bytes) -> str:
     """The text of an OBJ or MTL file, which does not state its encoding, with "\\n" between its lines.
 
-    UTF-8, UTF-16 where a byte order mark begins the file, or else Latin-1, as old exporters write.
+    UTF-8, UTF-16 where a byte order mark or every second byte of the beginning shows it, or else Latin-1, as old
+    exporters write.
     """
     try:
-        text = data.decode(UTF_16.get(data[:2], "utf-8-sig"))
+        text = data.decode(utf_16(data) or "utf-8-sig")
     except UnicodeDecodeError:
         text = data.decode("latin-1")
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def utf_16(data: bytes) -> str | None:
+    """The name of the encoding of a text in UTF-16; None for another one."""
+    low, high = data[:BEGINNING:2], data[1:BEGINNING:2]
+    if all(low) and not any(high) and high:  # a text in a Latin alphabet: every second byte is 0
+        return "utf-16-le"
+    if all(high) and not any(low) and high:
+        return "utf-16-be"
+    return UTF_16.get(data[:2])
 
 
 class Folder:

@@ -107,7 +107,7 @@ def scene_of(content: Content, name: str = "scene", source: str | None = None, s
             if placed.part not in meshes:
                 meshes[placed.part] = None
                 with notes.collecting():
-                    meshes[placed.part] = _mesh(placed.part)
+                    meshes[placed.part] = _mesh(placed.part, notes)
             made = meshes[placed.part]
             if made is not None:
                 instances.append(_instance(*made, placed))
@@ -132,7 +132,7 @@ def _nothing(reasons: Sequence[str], notes: Notes) -> str:
     return f"nothing can be drawn: {'; '.join(reasons[:TOLD])}{more}"
 
 
-def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
+def _mesh(part: Part, notes: Notes) -> tuple[Mesh, np.ndarray]:
     """The part's mesh, of the vertices that triangles use, and where its origin is in the part's own coordinates."""
     name = shorten(part.name)
     vertices, faces = np.asarray(part.vertices), np.asarray(part.faces, np.int64)
@@ -151,9 +151,7 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
         "tangents": part.tangents,
         "visibility": part.visibility,
     }
-    for key, array in arrays.items():
-        if array is not None and len(array) != len(vertices):
-            raise SceneError(f"mesh '{name}': {len(array)} {key} for {len(vertices)} vertices")
+    arrays = {key: _usable(key, array, len(vertices), name, notes) for key, array in arrays.items()}
     used = np.zeros(len(vertices), bool)
     used[faces] = True
     if not used.all():
@@ -169,6 +167,29 @@ def _mesh(part: Part) -> tuple[Mesh, np.ndarray]:
     normals, uv, colors, tangents, visibility = arrays.values()
     mesh = Mesh(vertices, faces, normals, uv, colors, part.material, name, tangents=tangents, visibility=visibility)
     return mesh, offset
+
+
+def _usable(key: str, array: np.ndarray | None, count: int, mesh: str, notes: Notes) -> np.ndarray | None:
+    """An attribute of the vertices; None, with a note, for one that cannot be used.
+
+    Normals that are not finite become 0, of which `Mesh` makes new ones; colours are clipped to [0, 1].
+    """
+    if array is None:
+        return None
+    array = np.asarray(array)
+    if len(array) != count:
+        notes.add("left out: ", f"{len(array)} {key} for the {count} vertices of mesh '{mesh}'", separator="; ")
+        return None
+    finite = np.isfinite(array).all(axis=1) if array.ndim == 2 else np.ones(count, bool)
+    if not finite.all() and key == "normals":
+        array = np.where(finite[:, None], array, 0)
+    elif not finite.all():
+        notes.add("left out: ", f"{key} of mesh '{mesh}', of which {count - finite.sum()} are not finite", separator="; ")
+        return None
+    if key == "colors" and array.ndim == 2 and not 0 <= array.min() <= array.max() <= 1:
+        notes.add("the colours of mesh ", f"'{mesh}'", " are outside [0, 1], and were clipped")
+        return array.clip(0, 1)
+    return array
 
 
 def _instance(mesh: Mesh, offset: np.ndarray, placed: Placed) -> Instance:

@@ -95,7 +95,7 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
 
 def _header(data: bytes) -> tuple[str, list[_Element], list[str], int]:
     """The byte order, the elements, the comments, and where the data begin. Lines end as the first one does."""
-    first = re.match(rb"\s*ply[ \t]*(\r\n|\n|\r)", data)
+    first = re.match(rb"(?:\xef\xbb\xbf)?\s*(?:ply|PLY)[ \t]*(\r\n|\n|\r)", data)
     if first is None:
         raise FileError(f"is no PLY file: it starts with {data[:12]!r}")
     newline = first[1]

@@ -9,19 +9,23 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import FileError
-from .folder import Folder
+from .folder import Folder, utf_16
 from .numbers import numbers
 from .options import FileOptions
 from .parts import Content, Notes, Part, Placed
 
 HEADER, TRIANGLE = 84, 50  # bytes of a binary file's header, with the count, and of a triangle
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
-_FACET, _END = (re.compile(word, re.IGNORECASE) for word in (rb"\bouter\s+loop\b", rb"\bendloop\b"))
+_FACET, _END, _NORMAL = (
+    re.compile(word, re.IGNORECASE) for word in (rb"\bouter\s+loop\b", rb"\bendloop\b", rb"\bfacet\s+normal\b")
+)
 
 
 def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np.ndarray) -> Content:
     """The part of an STL file, at the pose `root`. Raises `FileError`."""
     notes = Notes()
+    if encoding := utf_16(data):
+        data = data.decode(encoding, "replace").encode("latin-1", "replace")
     if _is_text(data):
         corners = _ascii(data)
         if b"endsolid" not in data and b"ENDSOLID" not in data:
@@ -34,8 +38,8 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
 
 def _is_text(data: bytes) -> bool:
     """Binary files may begin with "solid", too: the word alone does not decide where the size fits a binary file."""
-    begins = data[:256].lstrip(b"\xef\xbb\xbf \t\r\n")[:5].lower() == b"solid"
-    if not begins:
+    begins = data[:256].lstrip(b"\xef\xbb\xbf \t\r\n").lower()
+    if not begins.startswith((b"solid", b"facet")):
         return False
     count = int.from_bytes(data[80:HEADER], "little")
     fits = len(data) >= HEADER and count > 0 and len(data) == HEADER + TRIANGLE * count
@@ -55,7 +59,7 @@ def _binary(data: bytes) -> np.ndarray:
 def _ascii(data: bytes) -> np.ndarray:
     """(3 F, 3) float64."""
     name, newline, rest = data.replace(b"\r", b"\n").lstrip(b"\xef\xbb\xbf \t\n").partition(b"\n")
-    body = rest if newline and b"facet" not in name else name + newline + rest
+    body = rest if newline and _NORMAL.search(name) is None else name + newline + rest
     # exporters write a vertex a line: those lines alone are read; other layouts take three times as long
     lines = [line for line in body.split(b"\n") if b"vertex" in line]
     facets = body.count(b"outer loop")

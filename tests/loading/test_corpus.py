@@ -284,6 +284,62 @@ def lines_beside_triangles(file):
     return one()
 
 
+def broken(file, kind):
+    """An accessor that reaches far beyond its buffer view."""
+    file.header["accessors"].append({"bufferView": 0, "componentType": 5126, "count": 900, "type": kind})
+    return len(file.header["accessors"]) - 1
+
+
+@feature
+def broken_attributes_that_nothing_uses(file):
+    for name, kind in (("TANGENT", "VEC4"), ("TEXCOORD_3", "VEC2"), ("COLOR_1", "VEC4"), ("JOINTS_0", "VEC4")):
+        file.primitive["attributes"][name] = broken(file, kind)
+    return one()
+
+
+@feature
+def broken_normals(file):
+    file.primitive["attributes"]["NORMAL"] = broken(file, "VEC3")
+    file.note = "NORMAL of mesh 'triangle' was left out: accessors.1.: its 900 elements end at byte"
+    return one()
+
+
+@feature
+def mesh_of_broken_positions_beside_another(file):
+    file.header["meshes"].append({"name": "damaged", "primitives": [{"attributes": {"POSITION": broken(file, "VEC3")}}]})
+    file.header["nodes"].append({"mesh": 1})
+    file.header["scenes"][0]["nodes"].append(2)
+    file.note = "left out: mesh 'damaged': accessors.1.: its 900 elements end at byte"
+    return one()
+
+
+@feature
+def colours_and_uv_that_are_not_finite(file):
+    file.attribute("COLOR_0", np.array([(1, 1, 1), (np.nan, 1, 1), (1, 1, 1)], np.float32))
+    file.attribute("TEXCOORD_0", np.full((3, 2), np.inf, np.float32))
+    file.note = "left out: uv of mesh 'triangle', of which 3 are not finite; colors of mesh 'triangle', of which 1 "
+    return one(colors=WHITE)
+
+
+@feature
+def colours_beyond_one(file):
+    file.attribute("COLOR_0", np.array([(2, -1, 0.5)] * 3, np.float32))
+    file.note = "the colours of mesh 'triangle' are outside"
+    return one(colors=np.array([[(1, 0, 0.5)]]))
+
+
+@feature
+def nodes_that_are_not_visible(file):
+    """With all below them (KHR_node_visibility)."""
+    file.header["nodes"] += [
+        {"children": [3], "extensions": {"KHR_node_visibility": {"visible": False}}},
+        {"mesh": 0, "translation": [0.5, 0, 0]},
+    ]
+    file.header["scenes"][0]["nodes"].append(2)
+    file.header["extensionsUsed"] = ["KHR_node_visibility"]
+    return one()
+
+
 @feature
 def z_up(file):
     y_from_z = np.array([(1.0, 0, 0, 0), (0, 0, 1, 0), (0, -1, 0, 0), (0, 0, 0, 1)])
@@ -369,29 +425,6 @@ def unread_morph_target(file):
 
 
 @feature
-def linear_translation(file):
-    file.animated("translation", [1, 3], [(0, 0, 0), (1, 0.5, 0)])
-    file.load = {"time": 1.5}
-    return one(matrix=moved(0.25, 0.125))
-
-
-@feature
-def stepped_translation(file):
-    file.animated("translation", [0, 1, 2], [(0, 0, 0), (0.5, 0.2, 0), (9, 9, 9)], "STEP")
-    file.load = {"time": 1.9}
-    return one(matrix=moved(0.5, 0.2))
-
-
-@feature
-def cubic_translation(file):
-    """Hermite's polynomial at the half: (a + b) / 2 + (slope of a - slope of b) · span / 8."""
-    keys = [(0, 0, 0), (0, 0, 0), (0.5, 0, 0), (0, -0.5, 0), (0.4, 0, 0), (0, 0, 0)]
-    file.animated("translation", [0, 2], keys, "CUBICSPLINE")
-    file.load = {"time": 1.0}
-    return one(matrix=moved(0.2 + 0.5 * 2 / 8, 0.5 * 2 / 8))
-
-
-@feature
 def spherical_rotation(file):
     """The shorter way round, although the second quaternion has the other sign."""
     file.animated("rotation", [0, 1], [turn_z(0), [-part for part in turn_z(80)]])
@@ -404,6 +437,57 @@ def animated_scale(file):
     file.animated("scale", [0, 1], [(1, 1, 1), (0.5, 1.5, 1)])
     file.load = {"time": 7.0}  # behind the last key
     return one(matrix=np.diag([0.5, 1.5, 1, 1]))
+
+
+TIMES = (0.0, 1.0, 3.0)
+ROWS = {
+    "translation": [(0, 0, 0), (0.5, 0.2, -0.5), (-0.3, 0.1, 0.2)],
+    "rotation": [turn_z(0), turn_z(100), turn_z(-60)],
+    "scale": [(1, 1, 1), (0.5, 1.2, 1), (1.3, 0.7, 1)],
+    "weights": [(0, 0), (1, 0.5), (0.2, 0.8)],
+}
+SLOPES = np.random.default_rng(3).normal(scale=0.3, size=(3, 2, 4))  # into and out of each key
+
+
+def animation(path, interpolation):
+    """A feature: the triangle at 1.8 seconds, 0.4 of the way from the second key to the last."""
+
+    def feature(file):
+        rows, share = np.array(ROWS[path], float), 0.4
+        slopes = SLOPES[..., : rows.shape[1]]
+        value = {"STEP": rows[1], "LINEAR": 0.6 * rows[1] + 0.4 * rows[2]}.get(interpolation)
+        if value is None:  # the basis of Hermite; slopes are per second, and the span is 2 seconds
+            basis = np.array([(2, -2, 1, 1), (-3, 3, -2, -1), (0, 0, 1, 0), (1, 0, 0, 0)])
+            powers = np.array([share**3, share**2, share, 1])
+            value = powers @ basis @ np.stack([rows[1], rows[2], 2 * slopes[1, 1], 2 * slopes[2, 0]])
+        elif path == "rotation" and interpolation == "LINEAR":
+            value = np.array(turn_z(100 - 0.4 * 160))
+        stored = rows if interpolation != "CUBICSPLINE" else np.stack([slopes[:, 0], rows, slopes[:, 1]], axis=1)
+        if path == "weights":
+            morphed(file)
+            stored = stored.reshape(-1)
+        file.animated(path, TIMES, stored.reshape(-1, rows.shape[1]) if path != "weights" else stored, interpolation)
+        file.load = {"time": 1.8}
+        if path == "weights":
+            return one(np.add(CORNERS, [(0, -0.4 * value[1], 0), (0, 0, 0), (0.8 * value[0], 0, 0)]))
+        if path == "rotation":
+            return one(matrix=moved(linear=turned_by(value / np.linalg.norm(value))))
+        return one(matrix=moved(*value) if path == "translation" else np.diag([*value, 1]))
+
+    return feature
+
+
+def turned_by(quaternion):
+    """The rotation as Rodrigues states it: axis and angle."""
+    angle, axis = 2 * np.arccos(quaternion[3]), quaternion[:3] / np.linalg.norm(quaternion[:3])
+    x, y, z = axis
+    cross = np.array([(0, -z, y), (z, 0, -x), (-y, x, 0)])
+    return np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+
+
+for _path in ROWS:
+    for _interpolation in ("LINEAR", "STEP", "CUBICSPLINE"):
+        FEATURES[f"{_path} {_interpolation}"] = animation(_path, _interpolation)
 
 
 @feature

@@ -111,7 +111,7 @@ def test_far_coordinates_keep_their_relief(tmp_path):
 
 
 @pytest.mark.parametrize("newline", ["\n", "\r\n", "\r"])
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "latin-1"])
 def test_line_ends_and_encodings(tmp_path, newline, encoding):
     text = (f"# Müller\n\t v 0 0 0\n\tv\t1 0 0\n{TRIANGLE}f 3 4 \\\n5 # the last\n").replace("\n", newline)
     (mesh,) = meshes(write(tmp_path, text, encoding=encoding))

@@ -54,6 +54,13 @@ def test_a_big_endian_ply_with_other_properties(tmp_path):
     np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0), (2, 1, 0))
 
 
+@pytest.mark.parametrize(("before", "word"), [("\ufeff", "ply"), ("\n ", "ply"), ("", "PLY")])
+def test_beginnings_of_a_ply(tmp_path, before, word):
+    path = write_ply(tmp_path / "a.ply", VERTICES + FACES, POINTS.tobytes() + MIXED)
+    path.write_bytes((before + word).encode() + path.read_bytes()[3:])
+    assert len(only_mesh(path).faces) == 3
+
+
 @pytest.mark.parametrize("comment", ["comment von Müller", "obj_info num_cols 512", "comment"])
 def test_comments_of_a_ply(tmp_path, comment):
     path = write_ply(tmp_path / "a.ply", [comment, *VERTICES, *FACES], POINTS.tobytes() + MIXED)
@@ -124,6 +131,10 @@ def ascii_stl(name="cube", end="endsolid\n", newline="\n"):
         ascii_stl(end="endsolid cube\n\0\0\0").encode(),
         ascii_stl(end="endsolid cube\nexported at noon\n").encode(),
         ascii_stl("the outer loop").encode(),
+        ascii_stl("facet of vertex 1 2 3").encode(),
+        ascii_stl().partition("\n")[2].encode(),  # without "solid"
+        ascii_stl().encode("utf-16"),
+        ascii_stl().encode("utf-16-le"),
     ],
 )
 def test_an_ascii_stl(tmp_path, data):

@@ -14,6 +14,7 @@ KEYS = {"translation": 3, "rotation": 4, "scale": 3}
 def nodes_in_scene(gltf: Gltf) -> list[int]:
     """The nodes of the default scene, parents first, in the file's order; without scenes, of the whole file.
 
+    A node that is not visible, and all below it, is left out (KHR_node_visibility).
     Raises `FileError` unless the file's nodes form trees, as glTF demands.
     """
     parents = np.full(len(gltf.nodes), -1)
@@ -23,18 +24,19 @@ def nodes_in_scene(gltf: Gltf) -> list[int]:
                 raise FileError(f"its node '{gltf.node_name(child)}' is reached twice: nodes must form a tree")
             parents[child] = index
     roots = gltf.scenes[gltf.scene or 0].nodes if gltf.scenes else np.flatnonzero(parents < 0).tolist()
-    found = _walk(gltf, roots)
+    found = _walk(gltf, roots, hidden=False)
     if len(_walk(gltf, np.flatnonzero(parents < 0).tolist())) < len(gltf.nodes):
         raise FileError("some of its nodes are their own ancestors: nodes must form a tree")
     return found
 
 
-def _walk(gltf: Gltf, roots: list[int]) -> list[int]:
+def _walk(gltf: Gltf, roots: list[int], hidden: bool = True) -> list[int]:
+    """The nodes below the roots, with those that are not visible if they are wanted."""
     found: dict[int, None] = {}
     waiting = list(reversed(roots))
     while waiting:
         index = waiting.pop()
-        if index not in found:
+        if index not in found and (hidden or gltf.nodes[index].extensions.visibility.visible):
             found[index] = None
             waiting.extend(reversed(gltf.nodes[index].children))
     return list(found)

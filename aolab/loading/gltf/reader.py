@@ -6,6 +6,7 @@ import numpy as np
 
 from ...errors import FileError, SceneError
 from ...scene.camera import Camera
+from ...input import TooLarge
 from ..folder import Folder
 from ..options import FileOptions
 from ..parts import Content, Notes, Part, Placed
@@ -16,8 +17,9 @@ from .lights import lights_of, suited
 from .materials import Materials
 from .nodes import Poses, moved_at, nodes_in_scene, transform
 from .schema import Gltf, Primitive, checked, unread
-from .shapes import COLOR, OCCLUSION, Shapes
+from .shapes import ALREADY, COLOR, OCCLUSION, Shapes
 
+JOINED = ("JOINTS_", "WEIGHTS_")  # the attributes of a skin
 INSTANCED = {"TRANSLATION": ("VEC3",), "ROTATION": ("VEC4",), "SCALE": ("VEC3",)}
 
 
@@ -35,13 +37,16 @@ class _Reader:
         buffers = Buffers(self.gltf, binary, folder)
         self.accessors = Accessors(self.gltf, buffers, folder.budget)
         self.materials = Materials(self.gltf, buffers, folder, self.notes)
-        self.shapes = Shapes(self.gltf, self.accessors)
+        self.shapes = Shapes(self.gltf, self.accessors, self.notes)
+        self.broken: list[FileError] = []
         moved = moved_at(self.gltf, self.accessors, options.time, options.animation)
         self.poses, self.root = Poses(self.gltf, root, moved), root
 
     def content(self) -> Content:
         placed = self.placed()
         lights = suited(lights_of(self.gltf, self.nodes, self.poses, self.notes), placed, self.notes)
+        if not placed and self.broken:
+            raise self.broken[0]
         content = Content(placed, lights, self.camera(), left_out=self.left_out, notes=self.notes)
         if names := unread(self.gltf):
             self.notes.add(f"read, but not used: {', '.join(names)}")
@@ -58,7 +63,13 @@ class _Reader:
             mesh = self.gltf.meshes[source.mesh]
             weights = tuple(self.poses.weights.get(node, source.weights or mesh.weights or ()))
             name = mesh.name or f"mesh {source.mesh}"
-            placements = self._placements(node)
+            try:
+                placements = self._placements(node)
+            except TooLarge:
+                raise
+            except FileError as error:
+                self._leave_out(f"node '{self.gltf.node_name(node)}'", error)
+                continue
             for number, primitive in enumerate(mesh.primitives):
                 key = (source.mesh, number, weights, None if source.skin is None else node)
                 if key not in found:
@@ -70,24 +81,37 @@ class _Reader:
 
     def _part(self, primitive: Primitive, name: str, weights: tuple[float, ...], skin: int | None) -> Part | None:
         """None for a primitive without triangles, which is told as left out."""
+        color = COLOR if OCCLUSION in primitive.attributes else "COLOR_0"
+        material, uv = self.materials.material(primitive.material, colored=color in primitive.attributes)
+        used = {*ALREADY, OCCLUSION, color, f"TEXCOORD_{uv.set}"}
+        used |= {"TANGENT"} if material.normal_texture is not None else set()
+        used |= {key for key in primitive.attributes if key.startswith(JOINED)} if skin is not None else set()
         try:
-            shape = self.shapes.shape(primitive, name, weights)
+            shape = self.shapes.shape(primitive, name, weights, used)
             if skin is not None:
                 shape = self.shapes.bent(shape, skin, self.poses, name)
         except SceneError as error:
             self.left_out.append(str(error))
             return None
+        except TooLarge:
+            raise
+        except FileError as error:
+            self._leave_out(f"mesh '{name}'", error)
+            return None
         visibility = shape.attributes.get(OCCLUSION)
         visibility = None if visibility is None else visibility.reshape(-1, 1)
-        colors = shape.attributes.get("COLOR_0" if visibility is None else COLOR)
-        material, uv = self.materials.material(primitive.material, colored=colors is not None)
+        colors = shape.attributes.get(color)
         if colors is not None and colors.shape[1] == 3:
             colors = np.column_stack([colors, np.ones(len(colors), np.float32)])
-        tangents = shape.attributes.get("TANGENT") if material.normal_texture is not None else None
+        tangents = shape.attributes.get("TANGENT")
         coordinates = uv.of(shape.attributes)
         return Part(
             shape.vertices, shape.faces, shape.normals, coordinates, colors, material, name, tangents, visibility
         )
+
+    def _leave_out(self, part: str, error: FileError) -> None:
+        self.broken.append(error)
+        self.left_out.append(f"{part}: {error}")
 
     def _placements(self, node: int) -> list[tuple[np.ndarray, str]]:
         """Where the node's mesh stands: once, or once an instance (EXT_mesh_gpu_instancing)."""

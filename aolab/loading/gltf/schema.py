@@ -25,6 +25,7 @@ READ = {
     "KHR_draco_mesh_compression",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
+    "KHR_node_visibility",
     "KHR_xmp_json_ld",
 }
 COLLECTIONS = ("accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials", "meshes",
@@ -102,9 +103,14 @@ class Instancing(Object):
     attributes: dict[str, AccessorIndex]
 
 
+class Visibility(Object):
+    visible: bool = True
+
+
 class NodeExtensions(Extensions):
     light: LightReference | None = Field(default=None, alias="KHR_lights_punctual")
     instancing: Instancing | None = Field(default=None, alias="EXT_mesh_gpu_instancing")
+    visibility: Visibility = Field(default=Visibility(), alias="KHR_node_visibility")
 
 
 class Node(Object):
@@ -452,7 +458,7 @@ def unread(gltf: Gltf) -> list[str]:
 
     A property stands with the list that holds it: `materials.normalTexture`.
     """
-    found = {*gltf.extensions_used, *_undeclared(gltf, "")} - READ
+    found = {*gltf.extensions_used, *gltf.extensions_required, *_undeclared(gltf, "")} - READ
     if any(material.pbr_metallic_roughness.metallic_factor > 0 for material in gltf.materials):
         found.add("materials.metallicFactor")
     return sorted(map(shorten, found))

@@ -1,10 +1,13 @@
 """The triangles of a glTF primitive: read, morphed, and bent by a skin."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from ...errors import FileError, SceneError
+from ...input import TooLarge
+from ..parts import Notes
 from .accessors import Accessors
 from .draco import decoded
 from .nodes import Poses
@@ -12,6 +15,7 @@ from .schema import Gltf, Primitive
 
 TRIANGLES, STRIP, FAN = 4, 5, 6
 ALREADY = ("POSITION", "NORMAL")
+NEEDED = ("POSITION", "JOINTS", "WEIGHTS")  # the beginnings of attributes without which nothing can be drawn
 # written by `aolab.baking.write_glb`: the visibility of vertices, and their colour without it
 OCCLUSION, COLOR = "_OCCLUSION", "_COLOR"
 
@@ -29,19 +33,19 @@ class Shape:
 class Shapes:
     """The primitives of a file as shapes."""
 
-    def __init__(self, gltf: Gltf, accessors: Accessors) -> None:
-        self._gltf, self._accessors = gltf, accessors
+    def __init__(self, gltf: Gltf, accessors: Accessors, notes: Notes) -> None:
+        self._gltf, self._accessors, self._notes = gltf, accessors, notes
         self._skins: dict[int, np.ndarray] = {}
         self._quantized = "KHR_mesh_quantization" in {*gltf.extensions_used, *gltf.extensions_required}
 
-    def shape(self, primitive: Primitive, name: str, weights: tuple[float, ...]) -> Shape:
-        """A primitive with its morph targets at `weights`.
+    def shape(self, primitive: Primitive, name: str, weights: tuple[float, ...], used: Collection[str]) -> Shape:
+        """A primitive with its morph targets at `weights`, and with those of the attributes `used` that it has.
 
         Raises `SceneError`, with the primitive's `name`, for one without triangles, `FileError` for broken accessors.
         """
         if primitive.mode < TRIANGLES:
             raise SceneError(f"mesh '{name}' holds {'points' if primitive.mode == 0 else 'lines'}, no triangles")
-        attributes, indices, mode = self._arrays(primitive, name)
+        attributes, indices, mode = self._arrays(primitive, name, used)
         if "POSITION" not in attributes:
             raise SceneError(f"mesh '{name}' has no POSITION")
         vertices, normals = attributes["POSITION"], attributes.get("NORMAL")
@@ -66,28 +70,43 @@ class Shapes:
             others.pop("TANGENT", None)  # those of the shape at rest; new ones are made
         return Shape(vertices, triangles(indices, mode), normals, others)
 
-    def _arrays(self, primitive: Primitive, name: str) -> tuple[dict[str, np.ndarray], np.ndarray | None, int]:
-        """The attributes by name, the indices, if there are some, and the mode in which to take them."""
+    def _arrays(
+        self, primitive: Primitive, name: str, used: Collection[str]
+    ) -> tuple[dict[str, np.ndarray], np.ndarray | None, int]:
+        """The attributes by name, the indices, if there are some, and the mode in which to take them.
+
+        An attribute that cannot be read, and without which there is a shape, is left out with a note.
+        """
         if primitive.extensions.draco is not None:
             arrays = decoded(self._gltf, self._accessors, primitive, name)
             if arrays is not None:
                 return *arrays, TRIANGLES
         attributes = {}
         for attribute, accessor in primitive.attributes.items():
-            kinds = _KINDS.get(attribute if attribute in (OCCLUSION, COLOR) else attribute.partition("_")[0])
-            if kinds:
-                if attribute.startswith("JOINTS"):
-                    attributes[attribute] = self._accessors.stored(accessor)
-                    continue
-                # integers are fractions even where `normalized` was forgotten, unless the file may hold others
-                fractions = attribute.startswith(("COLOR", "WEIGHTS")) or not self._quantized
-                attributes[attribute] = self._accessors.floats(accessor, *kinds, fractions=fractions)
+            if attribute not in used:
+                continue
+            try:
+                attributes[attribute] = self._attribute(attribute, accessor)
+            except TooLarge:
+                raise
+            except FileError as error:
+                if attribute.startswith(NEEDED):
+                    raise
+                self._notes.add(f"{attribute} of mesh ", f"'{name}'", f" was left out: {error}")
         indices = None
         if primitive.indices is not None:
             indices = self._accessors.stored(primitive.indices)
             if indices.ndim != 1 or indices.dtype.kind == "f":
                 raise FileError(f"accessors[{primitive.indices}]: no list of whole numbers, as indices are")
         return attributes, indices, primitive.mode
+
+    def _attribute(self, name: str, accessor: int) -> np.ndarray:
+        kinds = _KINDS[name if name in (OCCLUSION, COLOR) else name.partition("_")[0]]
+        if name.startswith("JOINTS"):
+            return self._accessors.stored(accessor)
+        # integers are fractions even where `normalized` was forgotten, unless the file may hold others
+        fractions = name.startswith(("COLOR", "WEIGHTS")) or not self._quantized
+        return self._accessors.floats(accessor, *kinds, fractions=fractions)
 
     def bent(self, shape: Shape, skin: int, poses: Poses, name: str) -> Shape:
         """The shape in world space, as its joints carry it; the node that holds it has no say (glTF 2.0, 3.7.3.3)."""
