@@ -1,11 +1,17 @@
 """The exceptions of aolab. Every exception that aolab raises on purpose is an `aolab.Error`."""
 
 import difflib
+import re
 from collections.abc import Iterable
+
+LONG_WORD = 1000  # characters: longer ones, as of names in a damaged file, are shortened in messages
 
 
 class Error(Exception):
     """The base class of aolab's exceptions. The message names the value, the place and the alternatives."""
+
+    def __init__(self, message: str = "") -> None:
+        super().__init__(_with_short_words(message))
 
 
 class SceneError(Error, ValueError):
@@ -35,6 +41,9 @@ class GpuMemoryError(Error, MemoryError):
 class Notice(UserWarning):
     """A warning: input was repaired or left out, and the result is still usable. The shell prints it as a note."""
 
+    def __init__(self, message: str = "") -> None:
+        super().__init__(_with_short_words(message))
+
 
 LISTED = 32  # names in a message
 
@@ -43,6 +52,10 @@ def shorten(name: str, limit: int = 80) -> str:
     """A name from a file on one line, in printable characters; of a longer one than `limit`, both ends."""
     line = "".join(character if character.isprintable() else "�" for character in name)
     return line if len(line) <= limit else f"{line[: limit // 2]}...{line[-(limit // 2 - 3) :]}"
+
+
+def _with_short_words(message: str) -> str:
+    return re.sub(rf"\S{{{LONG_WORD},}}", lambda word: shorten(word[0]), message)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

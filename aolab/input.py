@@ -59,8 +59,19 @@ def read_file(path: str | PathLike[str], what: str, budget: Budget) -> bytes:
         raise FileError(f"{what} is a directory; give a regular file") from None
     except FileError:
         raise
+    except FileNotFoundError:
+        raise FileError(f"no file {path}") from None
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         raise FileError(f"{what} cannot be read: {getattr(error, 'strerror', None) or error}") from None
+
+
+def read_text(path: str | PathLike[str], what: str) -> str:
+    """The text of a file in UTF-8. Raises `FileError` as `read_file` does, and for another encoding."""
+    data = read_file(path, what, Budget())
+    try:
+        return data.decode()
+    except UnicodeDecodeError as error:
+        raise FileError(f"{what} is no text in UTF-8: byte {error.start} is {data[error.start]:#x}") from None
 
 
 def kind(mode: int) -> str:

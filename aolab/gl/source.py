@@ -9,6 +9,7 @@ from pathlib import Path
 
 from .. import paths
 from ..errors import ShaderError, suggestion
+from ..input import read_text
 from .unroll import unrolled
 
 VERSION = "#version 330 core"
@@ -93,7 +94,7 @@ def declared(shader: str | Path) -> Declared:
         path = None if is_text(one) else located(one, including)
         if path is None and not is_text(one):
             continue
-        text = str(one) if path is None else path.read_text(encoding="utf-8")
+        text = str(one) if path is None else read_text(path, _shown(path))
         names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
         samplers.update(_SAMPLER.findall(_COMMENT.sub("", text)))
         waiting += [(name, path) for name in names - includes]
@@ -171,7 +172,7 @@ class _Builder:
             raise ShaderError(f"{where}: include cycle: {' -> '.join(one.name for one in cycle)}")
         if path not in self.files:  # once only
             self.files.add(path)
-            self.add(_shown(path), path.read_text(encoding="utf-8"), [*chain, path])
+            self.add(_shown(path), read_text(path, _shown(path)), [*chain, path])
         return _shown(path)
 
     def missing(self, name: str | Path, including: Path | None) -> str:

@@ -72,7 +72,7 @@ class Parameters(BaseModel, metaclass=_Declared):
         def value(name: str, given: Any) -> Any:
             owner = cls.stated().get(name)
             if isinstance(given, str) and owner is not None and owner.model_fields[name].annotation is not str:
-                with suppress(json.JSONDecodeError):
+                with suppress(ValueError, RecursionError):  # no JSON; too many digits; brackets within brackets
                     return json.loads(given)
             return given
 

@@ -1,5 +1,6 @@
 """PNG files with the settings that made them, in a JSON text chunk named `aolab`."""
 
+import io
 import json
 from os import PathLike
 from pathlib import Path
@@ -9,6 +10,7 @@ import numpy as np
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
 from ..errors import FileError
+from ..input import Budget, read_file
 from ..output import replacing
 
 KEYWORD = "aolab"
@@ -30,13 +32,12 @@ def save_png(path: str | PathLike[str], image: np.ndarray, info: dict[str, Any])
 
 def read_png(path: str | PathLike[str]) -> dict[str, Any]:
     """The `info` of a PNG that `save_png` wrote. Raises `FileError` if the file is missing, or has none."""
+    data = read_file(path, str(path), Budget())
     try:
-        with Image.open(path) as image:
+        with Image.open(io.BytesIO(data), formats=["PNG"]) as image:
             text = getattr(image, "text", {}).get(KEYWORD)
-    except FileNotFoundError:
-        raise FileError(f"no file {path}") from None
     except (UnidentifiedImageError, OSError, SyntaxError, ValueError) as error:
-        raise FileError(f"cannot read {path} as PNG: {error}") from error
+        raise FileError(f"{path} is no readable PNG") from error
     if text is None:
         raise FileError(f"{path} has no aolab metadata: it was not saved by aolab")
     try:

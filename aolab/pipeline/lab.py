@@ -47,6 +47,7 @@ from .state import FrameContext, SurfaceState
 from .virtual_lights import VirtualLightMaps, draw_virtual_lights
 
 DEFAULT_SIZE = (1280, 720)
+MOST_ACCUMULATED = 16384  # frames: the noise is 1/128 of that of one frame
 
 
 class Lab:
@@ -105,7 +106,7 @@ class Lab:
 
         `scene` is anything that `aolab.load` takes; `module` a name, class or instance; `parameters` are the module's.
         `camera` defaults to the scene's. `seed` chooses the sample set; `accumulate` averages that many frames with
-        different sets. `last` is the frame before this one, for modules that read it.
+        different sets, at most 16384. `last` is the frame before this one, for modules that read it.
         Raises `ParameterError`, `SceneError`, `ShaderError`, `GpuMemoryError`, `ContextError`.
         """
         start, notes = perf_counter(), list[str]()
@@ -116,7 +117,7 @@ class Lab:
                 camera,
                 check_size(self.size if size is None else size),
                 _whole("seed", seed, 0),
-                _whole("accumulate", accumulate, 1),
+                _whole("accumulate", accumulate, 1, MOST_ACCUMULATED),
                 _display(exposure, tone_map),
                 last,
             )
@@ -378,13 +379,14 @@ def _as_scene(scene: Any) -> Scene:
     return load(scene)
 
 
-def _whole(name: str, value: int, least: int) -> int:
+def _whole(name: str, value: int, least: int, most: int | None = None) -> int:
     try:
         number = operator.index(value)  # NumPy's whole numbers too
     except TypeError:
         number = least - 1
-    if number < least:
-        raise ParameterError(f"{name} = {value!r} is not a whole number from {least} on")
+    if number < least or (most is not None and number > most):
+        range_of = f"from {least} on" if most is None else f"from {least} to {most}"
+        raise ParameterError(f"{name} = {value!r:.80} is not a whole number {range_of}")
     return number
 
 

@@ -50,7 +50,7 @@ Occluders = Annotated[
 Size = Annotated[str | None, Option(metavar="WxH", help="Width and height in pixels. Default: 1280x720.")]
 Seed = Annotated[int | None, Option(metavar="N", help="Number of the set of random samples. Default: 0.")]
 Accumulate = Annotated[
-    int | None, Option(metavar="K", help="Average K frames, each with another set of samples. Default: 1.")
+    int | None, Option(metavar="K", help="Average K frames, at most 16384, each with other samples. Default: 1.")
 ]
 Eye = Annotated[str | None, Option(metavar="X,Y,Z", help="Position of the camera. Default: the scene's.")]
 Target = Annotated[str | None, Option(metavar="X,Y,Z", help="Point at which the camera looks. Default: the scene's.")]

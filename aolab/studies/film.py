@@ -13,6 +13,7 @@ from PIL import Image
 from ..errors import FileError, ParameterError, suggestion
 from ..extras import need
 from ..gl.texture import Size
+from ..input import read_text
 from ..loading import load
 from ..loading.named import describe_scene
 from ..modules import MODULES, Module, find
@@ -86,8 +87,10 @@ def animate(
 def read_path(file: str | Path) -> list[Camera]:
     """The cameras of a JSON file: a list of objects with `eye`, `target` and, if need be, `up` and `fov`."""
     try:
-        entries = json.loads(Path(file).read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
+        entries = json.loads(read_text(file, str(file)))
+    except FileError as error:
+        raise FileError(f"cannot read the camera path: {error}") from None
+    except (ValueError, RecursionError) as error:
         raise FileError(f"cannot read the camera path {file}: {error}") from error
     known = [field.name for field in fields(Camera)]
     cameras = []

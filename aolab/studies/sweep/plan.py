@@ -13,6 +13,7 @@ import numpy as np
 
 from ...errors import FileError, Notice, ParameterError, suggestion
 from ...gl.texture import Size, check_size
+from ...input import read_text
 from ...modules import MODULES, Module, find
 from ...modules.parameters import Choice
 from ...scene.camera import Camera
@@ -263,10 +264,8 @@ def measures_of(measures: Any, with_reference: bool) -> tuple[Measure, ...]:
 def read_spec(path: Path) -> Plan:
     """The plan in a TOML file. Raises `FileError` and `ParameterError`, which name the file and the key."""
     try:
-        spec = tomllib.loads(path.read_text(encoding="utf-8"))
-    except FileNotFoundError:
-        raise FileError(f"no file {path}") from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        spec = tomllib.loads(read_text(path, str(path)))
+    except (ValueError, RecursionError) as error:  # TOMLDecodeError too
         raise FileError(f"cannot read {path} as TOML: {error}") from error
     try:
         return plan_of(spec, path.parent)
