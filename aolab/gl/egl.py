@@ -158,7 +158,8 @@ class Context:
     def load_opengl_function(self, name: str) -> int:
         """The address of a function of OpenGL; 0 if there is none."""
         address = self._egl.eglGetProcAddress(name.encode())
-        return address or ctypes.cast(getattr(_gl(), name, None), ctypes.c_void_p).value or 0
+        found = None if address else getattr(_gl(), name, None)
+        return address or (ctypes.cast(found, ctypes.c_void_p).value if found else None) or 0
 
     def __enter__(self) -> None:
         bind(self.binding)

@@ -180,11 +180,13 @@ def _usable(key: str, array: np.ndarray | None, count: int, mesh: str, notes: No
     if len(array) != count:
         notes.add("left out: ", f"{len(array)} {key} for the {count} vertices of mesh '{mesh}'", separator="; ")
         return None
-    finite = np.isfinite(array).all(axis=1) if array.ndim == 2 else np.ones(count, bool)
+    finite = np.asarray(np.isfinite(array).reshape(count, -1).all(axis=1))
     if not finite.all() and key == "normals":
         array = np.where(finite[:, None], array, 0)
     elif not finite.all():
-        notes.add("left out: ", f"{key} of mesh '{mesh}', of which {count - finite.sum()} are not finite", separator="; ")
+        notes.add(
+            "left out: ", f"{key} of mesh '{mesh}', of which {count - finite.sum()} are not finite", separator="; "
+        )
         return None
     if key == "colors" and array.ndim == 2 and not 0 <= array.min() <= array.max() <= 1:
         notes.add("the colours of mesh ", f"'{mesh}'", " are outside [0, 1], and were clipped")

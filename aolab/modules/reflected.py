@@ -1,7 +1,10 @@
-"""The last step of bounces that the lighting gathers: the reflection, dimmed by the module's visibility."""
+"""Bounces that the lighting gathers: the last step, the reflection, and the light that they do not send."""
 
+import warnings
 from collections.abc import Sequence
 
+from ..errors import Notice
+from ..scene.scene import Scene
 from .buffers import LIT
 from .estimate import Estimate
 from .passes import Pass
@@ -16,3 +19,10 @@ def bounce_of(irradiance: str, before: Sequence[Pass | Estimate], *, shaded: boo
     constants = {"adds": adds, "dimmed": shaded}
     reads = {"irradiance": irradiance, "other": "indirect" if adds else irradiance}
     return Pass("indirect", "shaded_bounce.frag", {"indirect": LIT["indirect"].format}, constants, reads)
+
+
+def note_emission(module: str, reflected: str, scene: Scene) -> None:
+    """A `Notice` in a scene with emission, of which the module's bounce sends nothing, but what is `reflected`."""
+    if scene.emits:
+        text = f"{module}: its bounce reflects {reflected}; the emission of surfaces lights no others"
+        warnings.warn(text, Notice, stacklevel=3)

@@ -15,7 +15,7 @@ from .filters.base import Filter
 from .none import Unoccluded
 from .parameters import parameter
 from .passes import Pass
-from .reflected import bounce_of
+from .reflected import bounce_of, note_emission
 
 LOW_SCALE = 0.25  # of the bounce with `gather="low"`: a pixel in 16 gathers
 MOST_SAMPLES = 512  # vectors in a uniform array, beside the other uniforms, of the 1024 that drivers have
@@ -102,3 +102,7 @@ class RSM(with_rsm(Unoccluded)):  # pyright: ignore[reportGeneralTypeIssues, rep
     name = "rsm"
     title = "Reflective shadow maps"
     paper = PAPER
+
+    def resolved(self, scene: Scene) -> Module:
+        note_emission("rsm", "lights alone", scene)
+        return super().resolved(scene)

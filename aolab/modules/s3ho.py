@@ -1,13 +1,11 @@
 """Screen-space spherical harmonic occlusion: visibility and cosine as 16 coefficients, apart from any light."""
 
-import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from typing import ClassVar, Literal
 
 import numpy as np
 
-from ..errors import Notice
 from ..maths.harmonics import clamped_cosine, rotation
 from ..scene.scene import Scene
 from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clamp
@@ -16,6 +14,7 @@ from .marched import Marched
 from .parameters import parameter
 from .passes import AMBIENT, Pass
 from .readable import Readable
+from .reflected import note_emission
 
 OCCLUSION = {f"occlusion{i}": "RGBA16F" for i in range(4)}
 BOUNCE = {f"bounce{i}": "RGBA16F" for i in range(7)}
@@ -140,7 +139,6 @@ class S3HO(Marched):
         return passes
 
     def resolved(self, scene: Scene) -> "S3HO":
-        if self.indirect and scene.emits:
-            text = "s3ho: its bounce reflects lights and environment; the emission of surfaces lights no others"
-            warnings.warn(text, Notice, stacklevel=2)
+        if self.indirect:
+            note_emission("s3ho", "lights and environment", scene)
         return with_distance_clamp(super().resolved(scene))

@@ -14,7 +14,7 @@ from .marched import Marched
 from .none import Unoccluded
 from .parameters import parameter
 from .passes import Pass, reflect
-from .reflected import bounce_of
+from .reflected import bounce_of, note_emission
 from .ssao import SSAO
 
 KELLER = "Keller 1997, Instant Radiosity"
@@ -142,3 +142,7 @@ class InstantRadiosity(with_instant_radiosity(SSAO)):  # pyright: ignore[reportG
     name = "instant_radiosity"
     title = "Instant radiosity"
     paper = f"{KELLER}; {SSDO_PAPER}, section 5"
+
+    def resolved(self, scene: Scene) -> Module:
+        note_emission("instant_radiosity", "lights alone", scene)
+        return super().resolved(scene)

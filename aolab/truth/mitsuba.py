@@ -19,7 +19,7 @@ from ..pipeline.frame import Frame
 from ..scene.camera import Camera
 from ..scene.scene import Scene
 from ..scene.view import Size, View
-from .mitsuba_scene import Description, Image, describe
+from .mitsuba_scene import SURFACES, Description, Image, describe
 from .picture import shown
 from .shot import Shot
 
@@ -45,9 +45,10 @@ def path_traced(
     `buffers` chooses what is computed, all (H, W, 3) float32 linear radiance, top row first, but for `image`:
 
     - `radiance`: everything, over the environment; paths of at most `max_depth` edges: 2 is direct light (of the
-      environment too), 3 adds one bounce, -1 is all of them; `image`: the same, tone mapped as a render, sRGB uint8;
+      environment too), 3 adds one bounce, -1 is all of them. Light that surfaces emit counts as light that they
+      reflect: its paths have one edge less; `image`: the same, tone mapped as a render, sRGB uint8;
     - `direct`, `ambient`, `indirect`, as of `aolab.reference(radius=None)`: direct light of the lights, direct
-      light of the environment, and one bounce of both, whatever `max_depth` is. 0 in the background.
+      light of the environment, and one bounce of both and of emission, whatever `max_depth` is. 0 in the background.
 
     Further buffers are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
     pixel (rounded up to a full grid) are taken for each light and for the environment, which are rendered one by one
@@ -56,8 +57,9 @@ def path_traced(
 
     Differences from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
     not from 9 coefficients; textures have one level; holes of cut-out textures have edges between texels; a surface
-    whose shading normal points away from the viewer is lit from behind. Parts without counterpart in Mitsuba are a
-    `SceneError`: a light without shadow, and vertex colours together with a texture.
+    whose shading normal points away from the viewer is lit from behind; backs of single-sided surfaces are there; maps of
+    normals and heights are not used. Parts without counterpart in Mitsuba are a `SceneError`: a light without shadow,
+    vertex colours together with a texture, the emission of a surface with holes, a texture of two wraps.
 
     Raises `ParameterError`, also if Mitsuba is not installed, and `Error` with Mitsuba's last lines if it fails.
     """
@@ -97,14 +99,17 @@ def _parts(buffer: str, scene: Scene, max_depth: int) -> list[tuple[int, Image]]
     lights = range(len(scene.lights))
     sky = [len(scene.lights)] if scene.environment.radiance.any() else []
     direct = [(1, Image(i, 2, background=False)) for i in lights]
+    glow = [SURFACES] if scene.emits else []
     if buffer == "direct":
         return direct
     if buffer == "ambient":
         return [(1, Image(i, 2, background=False)) for i in sky]
     if buffer == "indirect":
         everywhere = (*lights, *sky)
-        return [(sign, Image(i, depth, background=False)) for i in everywhere for sign, depth in ((1, 3), (-1, 2))]
+        added = [(sign, Image(i, depth, background=False)) for i in everywhere for sign, depth in ((1, 3), (-1, 2))]
+        return added + [(sign, Image(i, depth, background=False)) for i in glow for sign, depth in ((1, 2), (-1, 1))]
     everything = [(1, Image(i, max_depth, background=False)) for i in lights]
+    everything += [(1, Image(i, max_depth if max_depth < 0 else max_depth - 1, background=False)) for i in glow]
     return everything + [(1, Image(i, max_depth, background=True)) for i in sky]
 
 

@@ -9,18 +9,23 @@ from ..errors import SceneError
 from ..pictures.images import linear_from_srgb
 from ..scene.environment import Environment
 from ..scene.lights import DirectionalLight, Light, PointLight, SpotLight
-from ..scene.mesh import Mesh
+from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Instance, Scene
 from ..scene.view import View
 
 # Mitsuba lifts rays off a surface by 9e-5 × (1 + the largest coordinate). With a scene of this radius the 1 does not
 # matter, and the lift is the same share of every scene, whatever its unit.
 RADIUS = 1000.0
+SURFACES = -1
+APART = 1e-5 * RADIUS
 SPOT_TEXELS = 1024  # across a spot's cone; between them its falloff is interpolated
 
 
 class Image(NamedTuple):
-    """One rendering: a single emitter (an index of the description's), and paths of at most `max_depth` edges."""
+    """One rendering: a single emitter (an index of the description's), and paths of at most `max_depth` edges.
+
+    The emitter `SURFACES` is the emission of all surfaces.
+    """
 
     emitter: int
     max_depth: int
@@ -28,7 +33,8 @@ class Image(NamedTuple):
 
     @property
     def name(self) -> str:
-        return f"emitter{self.emitter}.depth{self.max_depth}" + ".background" * self.background
+        emitter = "surfaces" if self.emitter == SURFACES else f"emitter{self.emitter}"
+        return f"{emitter}.depth{self.max_depth}" + ".background" * self.background
 
 
 @dataclass
@@ -42,19 +48,23 @@ class Description:
 def describe(scene: Scene, view: View, images: list[Image], samples: int, seed: int) -> Description:
     """The worker's input. Emitters are the scene's lights, in order, and then its environment.
 
-    Raises `SceneError` for parts without counterpart in Mitsuba: a light without shadow, vertex colours × texture,
-    emission.
+    Raises `SceneError` for parts without counterpart in Mitsuba: a light without shadow, vertex colours × texture, the
+    emission of a surface with holes.
     """
     assert scene.environment is not None  # Scene fills it in
-    if scene.emits:
-        raise SceneError("a material of the scene has an emission: engine = 'mitsuba' draws none; leave it out")
     centre, scale = scene.bounds.mean(axis=0), RADIUS / scene.radius
-    cut_out = any(instance.mesh.material.alpha_cutoff is not None for instance in scene.instances)
+    materials = [instance.mesh.material for instance in scene.instances]
+    cut_out = any(material.alpha_cutoff is not None or material.blend for material in materials)
     made = Description()
+    shapes: dict[str, dict[str, Any]] = {}
     for i, instance in enumerate(scene.instances):
-        _shape(made.arrays, f"shape{i}", instance, centre, scale)
+        name, mesh = f"shape{i}", instance.mesh
+        _shape(made.arrays, name, instance, centre, scale)
+        shapes[name] = _material(made.arrays, name, mesh)
+        if _glow(made.arrays, name, mesh) and mesh.material.double_sided and not mesh.is_solid:
+            shapes[_with_back(made.arrays, name)] = shapes[name]
     made.scene = {
-        "shapes": [_material(made.arrays, f"shape{i}", each.mesh) for i, each in enumerate(scene.instances)],
+        "shapes": shapes,
         "emitters": [
             *(_light(made.arrays, f"light{i}", light, centre, scale) for i, light in enumerate(scene.lights)),
             _environment(made.arrays, scene.environment),
@@ -98,7 +108,7 @@ def _shape(arrays: dict[str, np.ndarray], name: str, instance: Instance, centre:
     arrays[f"{name}.vertices"] = vertices.astype(np.float32)
     arrays[f"{name}.normals"] = normals.astype(np.float32)
     arrays[f"{name}.faces"] = mesh.faces
-    if mesh.material.texture is not None:
+    if mesh.material.texture is not None or mesh.material.emission_texture is not None:
         uv = np.zeros((len(vertices), 2), np.float32) if mesh.uv is None else mesh.uv
         arrays[f"{name}.uv"] = np.stack([uv[:, 0], 1 - uv[:, 1]], axis=1)  # Mitsuba's v grows from the first row down
 
@@ -116,7 +126,8 @@ def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str,
             f"mesh '{mesh.name}': engine = 'mitsuba' has no product of vertex colours and texture, nor cut-out vertex "
             "alpha; leave out one of them"
         )
-    description: dict[str, Any] = {"reflectance": base[:3].clip(0, 1).tolist(), "opacity": None}
+    description: dict[str, Any] = {"reflectance": base[:3].clip(0, 1).tolist(), "opacity": None, "holes": "nearest"}
+    description |= {"wrap": _wrap(texture), "filter": "nearest" if texture is not None and texture.nearest else "bilinear"}
     if len(colors) > 1:
         arrays[f"{name}.colors"] = (colors * base)[:, :3].clip(0, 1)
         description["reflectance"] = "vertex_color"
@@ -124,12 +135,56 @@ def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str,
         key = f"{name}.reflectance"
         arrays[key] = (linear_from_srgb(texture.pixels[..., :3]) * base[:3]).clip(0, 1)
         description["reflectance"] = key
+    if material.blend and (texture is not None or base[3] < 1):
+        key = f"{name}.opacity"
+        alpha = np.full((1, 1), 255, np.uint8) if texture is None else texture.pixels[..., 3]
+        arrays[key] = (alpha[..., None] / 255 * base[3]).astype(np.float32)
+        description |= {"opacity": key, "holes": description["filter"]}
     if cut_out:
         key = f"{name}.opacity"
         alpha = np.full((1, 1), 255, np.uint8) if texture is None else texture.pixels[..., 3]
         arrays[key] = (alpha[..., None] / 255 * base[3] >= material.alpha_cutoff).astype(np.float32)
         description["opacity"] = key
     return description
+
+
+def _wrap(texture: Texture | None) -> str:
+    """Mitsuba's word for how a texture goes on outside [0, 1]; it has one for both axes."""
+    if texture is None:
+        return "repeat"
+    if texture.wrap[0] != texture.wrap[1]:
+        raise SceneError(
+            f"texture '{texture.name}': engine = 'mitsuba' has one wrap for both axes, not {' and '.join(texture.wrap)}"
+        )
+    return texture.wrap[0]
+
+
+def _glow(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> bool:
+    """Whether the surface emits; then the array `NAME.radiance` is (1, 1, 3), or (H, W, 3) as the texture."""
+    material = mesh.material
+    if not any(material.emission):
+        return False
+    if material.alpha_cutoff is not None or material.blend:
+        raise SceneError(f"mesh '{mesh.name}': engine = 'mitsuba' has no emission of a surface with holes, or blended")
+    emission = np.array(material.emission, np.float32)[None, None]
+    if material.emission_texture is not None:
+        _wrap(material.emission_texture)
+        emission = emission * linear_from_srgb(material.emission_texture.pixels[..., :3])
+    arrays[f"{name}.radiance"] = emission
+    return True
+
+
+def _with_back(arrays: dict[str, np.ndarray], name: str) -> str:
+    """The name of a copy of the shape, turned round and a little behind it: Mitsuba's surfaces emit to one side."""
+    back = f"{name}_back"
+    for part in ("uv", "colors", "radiance"):
+        if f"{name}.{part}" in arrays:
+            arrays[f"{back}.{part}"] = arrays[f"{name}.{part}"]
+    normals = arrays[f"{name}.normals"]
+    arrays[f"{back}.normals"] = -normals
+    arrays[f"{back}.faces"] = arrays[f"{name}.faces"][:, ::-1].copy()
+    arrays[f"{back}.vertices"] = arrays[f"{name}.vertices"] - np.float32(APART) * normals
+    return back
 
 
 def _light(arrays: dict[str, np.ndarray], name: str, light: Light, centre: np.ndarray, scale: float) -> dict[str, Any]:

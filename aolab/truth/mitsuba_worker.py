@@ -14,6 +14,7 @@ import numpy as np
 
 Arrays = dict[str, np.ndarray]
 VERTEX_COLOR = "vertex_color"
+SURFACES = -1  # the emitter of an image: the emission of all surfaces
 
 
 def main(folder: Path) -> None:
@@ -21,16 +22,21 @@ def main(folder: Path) -> None:
     scene = json.loads((folder / "scene.json").read_text())
     with np.load(folder / "arrays.npz") as file:
         arrays = {name: file[name] for name in file.files}
-    shapes = {f"shape{i}": _shape(f"shape{i}", material, arrays) for i, material in enumerate(scene["shapes"])}
+    dark, glowing = (
+        {name: _shape(name, material, arrays, glows) for name, material in scene["shapes"].items()}
+        for glows in (False, True)
+    )
     emitters = [_emitter(description, arrays) for description in scene["emitters"]]
     sensor = _sensor(scene["camera"], *scene["size"])
     images = {}
     for seed, (name, image) in enumerate(scene["images"].items(), start=scene["seed"]):
-        world = mi.load_dict({"type": "scene", **shapes, "emitter": emitters[image["emitter"]]})
+        of_surfaces = image["emitter"] == SURFACES
+        content = glowing if of_surfaces else {**dark, "emitter": emitters[image["emitter"]]}
+        world = mi.load_dict({"type": "scene", **content})
         integrator = mi.load_dict({
             "type": scene["integrator"],
             "max_depth": image["max_depth"],
-            "hide_emitters": not image["background"],
+            "hide_emitters": not (of_surfaces or image["background"]),
         })  # fmt: skip
         rendered = mi.render(world, sensor=sensor, integrator=integrator, seed=seed % 2**32, spp=scene["samples"])
         images[name] = np.array(rendered, np.float32)
@@ -57,11 +63,16 @@ def _sensor(camera: dict[str, Any], width: int, height: int) -> Any:
     return mi.load_dict({**lens, **camera, "film": film, "sampler": {"type": "multijitter"}})
 
 
-def _shape(name: str, material: dict[str, Any], arrays: Arrays) -> Any:
+def _shape(name: str, material: dict[str, Any], arrays: Arrays, glows: bool) -> Any:
     vertices, faces, normals = (arrays[f"{name}.{part}"] for part in ("vertices", "faces", "normals"))
     uv, colors = arrays.get(f"{name}.uv"), arrays.get(f"{name}.colors")
     properties = mi.Properties()
     properties["bsdf"] = _bsdf(material, arrays)
+    radiance = arrays.get(f"{name}.radiance")
+    if glows and radiance is not None:
+        even = radiance.shape[:2] == (1, 1)
+        value = {"type": "rgb", "value": radiance[0, 0].tolist()} if even else _bitmap(radiance, "bilinear", "repeat")
+        properties["emitter"] = mi.load_dict({"type": "area", "radiance": value})
     mesh = mi.Mesh(name, len(vertices), len(faces), properties, True, uv is not None)
     parameters = mi.traverse(mesh)
     parameters["vertex_positions"] = vertices.ravel()
@@ -81,12 +92,12 @@ def _bsdf(material: dict[str, Any], arrays: Arrays) -> Any:
     if reflectance == VERTEX_COLOR:
         reflectance = {"type": "mesh_attribute", "name": VERTEX_COLOR}
     elif isinstance(reflectance, str):
-        reflectance = _bitmap(arrays[reflectance], "bilinear", "repeat")
+        reflectance = _bitmap(arrays[reflectance], material["filter"], material["wrap"])
     else:
         reflectance = {"type": "rgb", "value": reflectance}
     bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": reflectance}}
     if material["opacity"] is not None:
-        bsdf = {"type": "mask", "opacity": _bitmap(arrays[material["opacity"]], "nearest", "repeat"), "bsdf": bsdf}
+        bsdf = {"type": "mask", "opacity": _bitmap(arrays[material["opacity"]], material["holes"], material["wrap"]), "bsdf": bsdf}
     return mi.load_dict(bsdf)
 
 

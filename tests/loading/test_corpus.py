@@ -306,7 +306,9 @@ def broken_normals(file):
 
 @feature
 def mesh_of_broken_positions_beside_another(file):
-    file.header["meshes"].append({"name": "damaged", "primitives": [{"attributes": {"POSITION": broken(file, "VEC3")}}]})
+    file.header["meshes"].append(
+        {"name": "damaged", "primitives": [{"attributes": {"POSITION": broken(file, "VEC3")}}]}
+    )
     file.header["nodes"].append({"mesh": 1})
     file.header["scenes"][0]["nodes"].append(2)
     file.note = "left out: mesh 'damaged': accessors.1.: its 900 elements end at byte"

@@ -56,10 +56,12 @@ def test_ssdo_sends_it(lab, occluders):
     np.testing.assert_allclose(measured.mean(axis=0) / measured.mean(), np.divide(GLOW, np.mean(GLOW)), rtol=0.01)
 
 
-def test_s3ho_states_that_it_does_not_send_it(lab):
-    with pytest.warns(aolab.Notice, match="the emission of surfaces lights no others"):
-        frame = lab.render(glowing_wall(), "s3ho", indirect=True, size=SIZE)
-    assert frame["indirect"].max() == 0
+@pytest.mark.parametrize(("module", "options"), [("s3ho", {"indirect": True}), ("rsm", {}), ("instant_radiosity", {})])
+def test_modules_state_that_they_do_not_send_it(lab, module, options):
+    scene = glowing_wall().replace(lights=(aolab.DirectionalLight((0, 1, 0)),))  # from below: it lights no front
+    with pytest.warns(aolab.Notice, match=f"{module}: .* the emission of surfaces lights no others"):
+        frame = lab.render(scene, module, size=SIZE, **options)
+    assert frame["indirect"][frame.mask & (frame["albedo"].max(axis=2) > 0)].max() < 0.01
 
 
 def test_hidden_surfaces_send_it(lab):

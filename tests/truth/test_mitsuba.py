@@ -239,6 +239,41 @@ def test_light_passes_through_the_holes_of_a_cut_out_texture():
 
 
 @needs_mitsuba
+def test_a_blended_surface_stops_a_share_of_the_light():
+    floor = quad((0, 0, 0), (0, 0, 4), (4, 0, 0))
+    pane = quad((0, 1, 0), (4, 0, 0), (0, 0, 4), material=aolab.Material((0, 0, 0), alpha=0.3, blend=True))
+    sun = aolab.DirectionalLight((0, -1, 0), (3.0,) * 3)
+    lit = scene(floor, pane, lights=(sun,), camera=aolab.Camera(eye=(0.3, 0.5, 0.6), target=(0.1, 0, 0)))
+    direct = path_traced(lit, size=(32, 24), samples=64, buffers="direct")["direct"]
+    alone = path_traced(scene(floor, lights=(sun,), camera=lit.camera), size=(32, 24), samples=4, buffers="direct")
+    assert direct.mean() / alone["direct"].mean() == pytest.approx(0.7, abs=0.01)
+
+
+@needs_mitsuba
+@pytest.mark.parametrize("kind", ["both sides", "a solid", "a texture"])
+def test_emission_is_seen_and_lights_others(kind):
+    """A lamp between a floor and a wall. Measured: bias 0.08 % of radiance, 0.3 % of indirect light."""
+    floor, wall = quad((0, 0, 0), (0, 0, 6), (6, 0, 0)), quad((0, 2, -2), (0, 4, 0), (6, 0, 0))
+    pixels = np.full((8, 8, 4), 255, np.uint8)
+    pixels[:4, :, :2] = 60
+    glow = aolab.Texture(pixels) if kind == "a texture" else None
+    paint = aolab.Material((0.3, 0.3, 0.3), emission=(3, 2, 1), emission_texture=glow)
+    lamp = quad((0, 1, 0), (1.5, 0, 0), (0, 0.3, 1), material=paint)
+    if kind == "a solid":
+        lamp = small_scenes.box((-0.6, 0.7, -0.5), (0.6, 1.2, 0.4), paint)
+    camera = aolab.Camera(eye=(1, 4, 4.5), target=(0, 0.7, -0.5), up=(0.17, 1, 0), fov=45)
+    lit = scene(floor, wall, lamp, camera=camera)
+    names = ("radiance", "indirect")
+    second = path_traced(lit, size=SIZE, samples=64, max_depth=3, buffers=names)
+    first = reference(lit, size=(SIZE[0] * 4, SIZE[1] * 4), rays=64, buffers=names)
+    for name in names:
+        ours = first[name].reshape(SIZE[1], 4, SIZE[0], 4, 3).mean(axis=(1, 3))
+        bias = bias_and_error(np.nan_to_num(ours), second[name])[0]
+        assert abs(bias) < 0.01
+        assert second[name].max() > 0.1
+
+
+@needs_mitsuba
 def test_without_light_all_is_black_and_nothing_runs():
     frame = path_traced(wall_scene(), size=SIZE, timeout=1e-9)
     assert (frame["radiance"] == 0).all()
@@ -311,3 +346,9 @@ def test_a_scene_that_mitsuba_cannot_render_is_refused():
     two = aolab.Mesh(one.vertices, one.faces, uv=one.uv, colors=np.eye(4), material=one.material, name="rag")
     with pytest.raises(SceneError, match=r"mesh 'rag'.* no product of vertex colours and texture"):
         path_traced(scene(two, lights=LIGHTS[:1]), size=SIZE)
+    holes = aolab.Material(alpha=0.5, blend=True, emission=(1, 1, 1))
+    with pytest.raises(SceneError, match=r"has no emission of a surface with holes, or blended"):
+        path_traced(scene(quad((0, 0, 0), (1, 0, 0), (0, 1, 0), material=holes)), size=SIZE)
+    uneven = aolab.Material(texture=aolab.Texture(np.zeros((1, 1, 4), np.uint8), "rug", wrap=("repeat", "clamp")))
+    with pytest.raises(SceneError, match=r"texture 'rug': .* one wrap for both axes, not repeat and clamp"):
+        path_traced(scene(quad((0, 0, 0), (1, 0, 0), (0, 1, 0), material=uneven), lights=LIGHTS[:1]), size=SIZE)

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import FileError, SceneError
-from ...scene.camera import Camera
 from ...input import TooLarge
+from ...scene.camera import Camera
 from ..folder import Folder
 from ..options import FileOptions
 from ..parts import Content, Notes, Part, Placed
