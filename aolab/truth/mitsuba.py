@@ -47,8 +47,8 @@ def path_traced(
     - `radiance`: everything, over the environment; paths of at most `max_depth` edges: 2 is direct light (of the
       environment too), 3 adds one bounce, -1 is all of them. Light that surfaces emit counts as light that they
       reflect: its paths have one edge less; `image`: the same, tone mapped as a render, sRGB uint8;
-    - `direct`, `ambient`, `indirect`, as of `aolab.reference(radius=None)`: direct light of the lights, direct
-      light of the environment, and one bounce of both and of emission, whatever `max_depth` is. 0 in the background.
+    - `direct`, `ambient`, `indirect`, as of `aolab.reference(radius=None)`: direct light of the lights, direct light of
+      the environment, and one bounce of both and of emission, whatever `max_depth` is. 0 in the background.
 
     Further buffers are viewZ, viewNormal and albedo: aolab's own G-buffer, at the pixels' centres. `samples` a
     pixel (rounded up to a full grid) are taken for each light and for the environment, which are rendered one by one
@@ -57,8 +57,8 @@ def path_traced(
 
     Differences from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
     not from 9 coefficients; textures have one level; holes of cut-out textures have edges between texels; a surface
-    whose shading normal points away from the viewer is lit from behind; backs of single-sided surfaces are there; maps of
-    normals and heights are not used. Parts without counterpart in Mitsuba are a `SceneError`: a light without shadow,
+    whose shading normal points away from the viewer is lit from behind; backs of single-sided surfaces are there; normal
+    maps and height maps are not used. Parts without counterpart in Mitsuba are a `SceneError`: a light without shadow,
     vertex colours together with a texture, the emission of a surface with holes, a texture of two wraps.
 
     Raises `ParameterError`, also if Mitsuba is not installed, and `Error` with Mitsuba's last lines if it fails.

@@ -127,7 +127,10 @@ def _material(arrays: dict[str, np.ndarray], name: str, mesh: Mesh) -> dict[str,
             "alpha; leave out one of them"
         )
     description: dict[str, Any] = {"reflectance": base[:3].clip(0, 1).tolist(), "opacity": None, "holes": "nearest"}
-    description |= {"wrap": _wrap(texture), "filter": "nearest" if texture is not None and texture.nearest else "bilinear"}
+    description |= {
+        "wrap": _wrap(texture),
+        "filter": "nearest" if texture is not None and texture.nearest else "bilinear",
+    }
     if len(colors) > 1:
         arrays[f"{name}.colors"] = (colors * base)[:, :3].clip(0, 1)
         description["reflectance"] = "vertex_color"

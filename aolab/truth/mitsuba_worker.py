@@ -97,7 +97,11 @@ def _bsdf(material: dict[str, Any], arrays: Arrays) -> Any:
         reflectance = {"type": "rgb", "value": reflectance}
     bsdf = {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": reflectance}}
     if material["opacity"] is not None:
-        bsdf = {"type": "mask", "opacity": _bitmap(arrays[material["opacity"]], material["holes"], material["wrap"]), "bsdf": bsdf}
+        bsdf = {
+            "type": "mask",
+            "opacity": _bitmap(arrays[material["opacity"]], material["holes"], material["wrap"]),
+            "bsdf": bsdf,
+        }
     return mi.load_dict(bsdf)
 
 
