@@ -118,7 +118,7 @@ def devices() -> list[str]:
 
 
 class Context:
-    """A new OpenGL core context of the device `index`, current in this thread: what `moderngl` draws with.
+    """A new OpenGL core context of the device `index`, current in this thread; `moderngl` draws with it.
 
     `version` is 330 for OpenGL 3.3. Raises `ContextError` where EGL makes none.
     """
