@@ -58,8 +58,8 @@ def path_traced(
     Differences from a render and the reference, besides noise and antialiasing: the environment's irradiance is exact,
     not from 9 coefficients; textures have one level; holes of cut-out textures have edges between texels; a surface
     whose shading normal points away from the viewer is lit from behind; the backs of single-sided surfaces are there;
-    normal maps and height maps are not used. Parts without counterpart in Mitsuba are a `SceneError`: a light without shadow,
-    vertex colours together with a texture, the emission of a surface with holes, a texture of two wraps.
+    normal maps and height maps are not used. Parts without counterpart in Mitsuba are a `SceneError`: a light without
+    shadow, vertex colours together with a texture, the emission of a surface with holes, a texture of two wraps.
 
     Raises `ParameterError`, also if Mitsuba is not installed, and `Error` with Mitsuba's last lines if it fails.
     """
