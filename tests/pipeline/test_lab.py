@@ -176,7 +176,7 @@ def test_buffers_are_saved_by_name(lab, boxes, tmp_path):
         ({"size": (1.5, 2)}, r"size = \(1\.5, 2\) is not two whole numbers"),
         ({"size": (5,)}, r"size = \(5,\) is not two whole numbers"),
         ({"seed": -1}, r"seed = -1 is not a whole number from 0 on"),
-        ({"accumulate": 0}, r"accumulate = 0 is not a whole number from 1 on"),
+        ({"accumulate": 0}, r"accumulate = 0 is not a whole number from 1 to 16384"),
         ({"accumulate": 1.5}, r"accumulate = 1.5 is not"),
         ({"exposure": 0}, r"exposure = 0 is not a number above 0"),
         ({"exposure": float("nan")}, r"exposure = nan"),
