@@ -101,6 +101,10 @@ def test_pictures_of_others_are_refused_by_name(tmp_path):
     path = tmp_path / "a.png"
     with pytest.raises(FileError, match=r"no file .*a\.png"):
         read_png(path)
+    if os.name == "posix":
+        os.mkfifo(tmp_path / "pipe.png")
+        with pytest.raises(FileError, match=r"pipe\.png is a named pipe"):
+            read_png(tmp_path / "pipe.png")
     path.write_bytes(b"not a picture")
     with pytest.raises(FileError, match=r"a\.png is no readable PNG"):
         read_png(path)

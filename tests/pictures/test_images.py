@@ -108,7 +108,7 @@ def test_a_file_that_is_not_a_picture_is_refused_with_the_known_kinds():
 
 
 def test_a_missing_picture_is_named(tmp_path):
-    with pytest.raises(FileError, match="no file .*bark\.png"):
+    with pytest.raises(FileError, match=r"no file .*bark\.png"):
         read_image(tmp_path / "bark.png", "bark")
 
 

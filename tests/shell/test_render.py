@@ -313,8 +313,11 @@ REFUSED = {
     "size beyond the limit": (("boxes", "--size", "99999x1"), r"size = 99999x1: each side must be from 1 to \d+"),
     "negative seed": (("boxes", *SMALL, "--seed", "-1"), r"seed = -1 is not a whole number from 0 on"),
     "accumulate for ever": (("boxes", *SMALL, "--accumulate", "9" * 30), r"accumulate = 9+ is not a whole number from"),
-    "a number of 5000 digits": (("boxes", *SMALL, "--set", f"radius={'9' * 5000}"), r"ssao: radius = '9+\.\.\.9+' is not"),
-    "accumulate nothing": (("boxes", *SMALL, "--accumulate", "0"), r"accumulate = 0 is not a whole number from 1 to 16384"),
+    "a number of 5000 digits": (("boxes", *SMALL, "--set", f"radius={'9' * 5000}"), r"radius = '9+\.\.\.9+' is not"),
+    "accumulate nothing": (
+        ("boxes", *SMALL, "--accumulate", "0"),
+        r"accumulate = 0 is not a whole number from 1 to 16",
+    ),
     "eye of two numbers": (("boxes", "--eye", "1,2"), r"--eye 1,2 is not three numbers X,Y,Z"),
     "eye on the target": (("boxes", "--eye", "1,1,1", "--target", "1,1,1"), r"eye and target are both"),
     "fov of a half circle": (("boxes", "--fov", "180"), r"fov = 180(\.0)? is outside \(0, 180\) degrees"),
