@@ -134,6 +134,54 @@ def test_a_file_comes_back_with_its_occlusion_colours_and_places(tmp_path):
     np.testing.assert_array_equal(seen["floor"].vertex_attributes["color"][:, 0], expected)
 
 
+def test_a_file_comes_back_with_its_camera_lights_and_materials(tmp_path, lab):
+    """The picture of the file is that of the scene: emission of 3, a scaled normal map, lights of three kinds."""
+    waves = np.full((16, 16, 4), 255, np.uint8)
+    waves[..., 0] = 128 + 60 * np.sin(np.arange(16) / 16 * 2 * np.pi)
+    waves[..., 1] = 128
+    wavy = Material((0.6, 0.5, 0.4), normal_texture=Texture(waves, "waves"), normal_scale=0.5, name="wavy")
+    glowing = Material((0.2, 0.2, 0.2), emission=(3.0, 1.5, 0.0), name="glowing")
+    ground = quad((-2, 0, 2), (4, 0, 0), (0, 0, -4), wavy, "floor")
+    ball = box((-0.5, 0.2, -0.5), (0.5, 1, 0.5))
+    ball = Mesh(ball.vertices, ball.faces, ball.normals, material=glowing, name="lamp")
+    lights = (
+        aolab.DirectionalLight((1, -2, -0.5), (1.0, 0.9, 0.8)),
+        aolab.PointLight((-1, 1.5, 1), (0, 2, 4)),
+        aolab.SpotLight((1.5, 2, 1), (-1, -1.5, -0.5), (5, 4, 3), inner=12, outer=33),
+    )
+    camera = aolab.Camera((0.5, 2.5, 4), (0, 0.2, 0), (0.2, 1, 0), fov=40)
+    scene = aolab.Scene((Instance(ground), Instance(ball)), lights, camera=camera)
+    baked = aolab.bake(scene, rays=8, texels=8)
+    write_glb(baked, tmp_path / "baked.glb")
+    with pytest.warns(Notice, match="materials.occlusionTexture"):
+        again = aolab.load(tmp_path / "baked.glb")
+    assert again.camera is not None
+    np.testing.assert_allclose(again.camera.view_from_world, camera.view_from_world, atol=1e-6)
+    assert again.camera.fov == pytest.approx(40)
+    assert again.instances[1].mesh.material.emission == pytest.approx((3.0, 1.5, 0.0), rel=1e-5)
+    assert again.instances[0].mesh.material.normal_scale == 0.5
+    np.testing.assert_allclose(again.instances[0].mesh.tangents, baked.instances[0].mesh.tangents, atol=1e-6)
+    for before, after in zip(lights, again.lights, strict=True):
+        for name in vars(before):
+            value = np.asarray(getattr(after, name), float)
+            wanted = np.asarray(getattr(before, name), float)
+            if name == "direction":
+                wanted = wanted / np.linalg.norm(wanted)
+            np.testing.assert_allclose(value, wanted, rtol=1e-5, atol=1e-6, err_msg=name)
+    first, second = (
+        lab.render(one.replace(environment=aolab.Environment.constant(0.3)), "none") for one in (baked, again)
+    )
+    assert np.abs(first["radiance"] - second["radiance"])[first.mask].mean() < 2e-3
+
+
+def test_an_orthographic_camera_comes_back(tmp_path):
+    camera = aolab.Camera((3, 2, 4), (0, 0, 0), ortho=2.5, near=0.5, far=40)
+    write_glb(of(floor(1.0), camera=camera), tmp_path / "scene.glb")
+    again = aolab.load(tmp_path / "scene.glb").camera
+    assert again is not None
+    assert (again.ortho, again.near, again.far) == pytest.approx((2.5, 0.5, 40))
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

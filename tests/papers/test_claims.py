@@ -98,8 +98,8 @@ def test_haos_figure_6_fails_if_the_grid_costs_as_much_as_rays_or_rays_cost_noth
 
 
 def test_haos_figure_7_fails_if_triangles_cost_a_tenth_of_the_frame():
-    assert not unmet(claimed_by_haos_figure_7(50.0, 55.0, 100.0))
-    assert unmet(claimed_by_haos_figure_7(50.0, 61.0, 100.0))
+    assert not unmet(claimed_by_haos_figure_7("animated", 50.0, 55.0, 100.0))
+    assert unmet(claimed_by_haos_figure_7("animated", 50.0, 61.0, 100.0))
 
 
 # --- two of the figures here, too: the others, and more of their mutations, are run by `make figures`

@@ -8,6 +8,8 @@ from ...gl.texture import Size
 from ...loading import load
 from ...modules import Unoccluded
 from ...pipeline.api import shared_lab
+from ...pipeline.frame import Frame
+from ...scene.scene import Scene
 from ...studies.machine import describe
 from ...truth import reference
 from ..figure import Figure, Need, figure
@@ -22,7 +24,7 @@ DETAILS = (1, 4)  # of the atrium
 
 
 def fig7(size: Size = SIZE, rays: int = 64, repeats: int = REPEATS) -> Figure:
-    """Three scenes without occlusion and with HAO; and the atrium with few and with many triangles, voxelised anew.
+    """Three scenes without occlusion and with HAO; and the atrium with few and many triangles, animated and still.
 
     Numbers: the RMSE of the visibility against rays that answer the same question, with HAO and without; the cost of
     HAO's own passes with many triangles and with few.
@@ -40,19 +42,32 @@ def fig7(size: Size = SIZE, rays: int = 64, repeats: int = REPEATS) -> Figure:
         needs.append(Need(f"HAO's RMSE over that without, {name}", error[name]["HAO"] / error[name]["none"], below=0.7))
         pictures += [(f"{name}, without occlusion", plain.image), ("with HAO", frame.image)]
     few, many = (load("atrium", detail=detail) for detail in DETAILS)
+
+    def animated(scene: Scene) -> Frame:
+        return lab.render(voxelised_anew(scene), TABLE_1, size=size)
+
+    def still(scene: Scene) -> Frame:
+        lab.render(scene, TABLE_1, size=size)  # which keeps its voxels
+        return lab.render(scene, TABLE_1, size=size)
+
     draws = {
-        name: partial(lambda scene: lab.render(voxelised_anew(scene), TABLE_1, size=size), scene)
+        (name, draw.__name__): partial(draw, scene)
         for name, scene in (("few", few), ("many", many))
+        for draw in (animated, still)
     }
     costs = in_turns(draws, repeats)
-    own = {name: statistics.median(map(own_cost, found)) for name, found in costs.items()}
-    frames = {name: statistics.median(cost.frame for cost in found) for name, found in costs.items()}
-    needs += claimed(own["few"], own["many"], frames["many"])
+    own = {case: statistics.median(map(own_cost, found)) for case, found in costs.items()}
+    frames = {case: statistics.median(cost.frame for cost in found) for case, found in costs.items()}
+    for kind in ("animated", "still"):
+        needs += claimed(kind, own["few", kind], own["many", kind], frames["many", kind])
     claim = "Occlusion by HAO is near rays', and its cost hardly depends on the number of triangles"
     numbers = {
         "rmse": error,
         "triangles": {"few": few.triangles, "many": many.triangles},
-        "milliseconds": {"own": own, "frame": frames},
+        "milliseconds": {
+            f"{kind} scene": {name: {"own": own[name, kind], "frame": frames[name, kind]} for name in ("few", "many")}
+            for kind in ("animated", "still")
+        },
         "rays": rays,
         "turns": repeats,
         "renderer": context.renderer(),
@@ -62,10 +77,10 @@ def fig7(size: Size = SIZE, rays: int = 64, repeats: int = REPEATS) -> Figure:
     return figure(heading, claim, needs, numbers, pictures[0::2] + pictures[1::2], 3)
 
 
-def claimed(few: float, many: float, frame: float) -> list[Need]:
-    """The claim's needs, from milliseconds: of HAO's own passes among few and many triangles, and of a whole frame."""
-    return [
-        Need(
-            "the cost that many triangles add to HAO's passes, as a share of the frame", (many - few) / frame, below=0.1
-        )
-    ]
+def claimed(kind: str, few: float, many: float, frame: float) -> list[Need]:
+    """The claim's need, from milliseconds: of HAO's own passes among few and many triangles, and of a whole frame.
+
+    An `animated` scene is voxelised in each frame, a `still` one was voxelised before.
+    """
+    name = f"the cost that many triangles add to HAO's passes, as a share of the frame, {kind} scene"
+    return [Need(name, (many - few) / frame, below=0.1)]
