@@ -1,4 +1,4 @@
-"""Relight: the environment turns around a scene. S3HO tests its directions once; each picture costs the lighting only."""
+"""Relight: the light turns around a scene. S3HO tests its directions once; each picture costs the lighting only."""
 
 from pathlib import Path
 
