@@ -58,3 +58,11 @@ html_static_path = ["_static"]
 html_css_files = ["aolab.css"]
 html_show_copyright = False
 html_math_renderer = "mathml"
+
+
+def setup(app) -> None:
+    """Without execution, the gallery has no pictures, which is no mistake."""
+    app.connect(
+        "config-inited",
+        lambda _, config: config.nb_execution_mode == "off" and config.suppress_warnings.append("mystnb.glue"),
+    )

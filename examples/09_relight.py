@@ -11,10 +11,12 @@ FRAMES = 24
 Path("out").mkdir(exist_ok=True)
 lab = aolab.Lab(size=(320, 240))
 boxes = aolab.load("boxes").replace(lights=())
-frame = lab.render(boxes, "s3ho", radius=1.5)
+light = boxes.environment
+assert light is not None, "the scene has an environment"
+frame = lit = lab.render(boxes, "s3ho", radius=1.5)
 images = []
 for i in range(FRAMES):
-    lit = lab.relight(frame, environment=boxes.environment.rotated(360 * i / FRAMES), exposure=2.0)
+    lit = lab.relight(frame, environment=light.rotated(360 * i / FRAMES), exposure=2.0)
     images.append(Image.fromarray(lit.image))
 images[0].save("out/relight.gif", save_all=True, append_images=images[1:], duration=120, loop=0)
 print("passes of a picture:", ", ".join(lit.timings))

@@ -45,16 +45,17 @@ def coloured_light(lab: aolab.Lab) -> Image.Image:
 
 def modules(lab: aolab.Lab) -> Image.Image:
     """The atrium with every module; prints the time of each pass."""
-    scene = aolab.load("atrium")
+    scene, renderer = aolab.load("atrium"), ""
     pictures = []
     for name in MODULES:
         lab.render(scene, name, size=SMALL).complete()  # the first frame compiles and uploads, the second is timed
         frame = lab.render(scene, name, size=SMALL).complete()
-        print(f"{name}: {frame.frame_ms:.0f} ms on {frame.info['renderer']}")
+        renderer = frame.info["renderer"]
+        print(f"{name}: {frame.frame_ms:.0f} ms on {renderer}")
         for step, milliseconds in frame.timings.items():
             print(f"  {step:20} {milliseconds:7.1f} ms")
         pictures.append((f"{name}: {frame.frame_ms:.0f} ms", frame.image))
-    return aolab.contact_sheet(pictures, columns=4, title=f"Every module, on {frame.info['renderer']}")
+    return aolab.contact_sheet(pictures, columns=4, title=f"Every module, on {renderer}")
 
 
 def below_each_other(sheets: list[Image.Image]) -> Image.Image:
