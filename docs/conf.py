@@ -16,7 +16,7 @@ author = "the aolab authors"
 copyright = author
 version = release = __version__
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx_design", "docstrings", "mathml", "tables"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.extlinks", "sphinx_design", "docstrings", "mathml", "tables"]
 exclude_patterns = ["_build", "_ext", "generated"]
 
 # The pages' code computes their pictures and figures; none of them is in the repository. A page runs again if its cells
@@ -35,6 +35,15 @@ nb_execution_show_tb = True
 nb_merge_streams = True
 nb_render_markdown_format = "myst"  # for tables
 
+# Links that open a notebook elsewhere: only a workflow of GitHub has the address of the repository.
+repository = os.environ.get("GITHUB_REPOSITORY", "OWNER/aolab")
+if "GITHUB_REPOSITORY" in os.environ:
+    tags.add("published")  # noqa: F821 - Sphinx defines it
+extlinks = {
+    "colab": (f"https://colab.research.google.com/github/{repository}/blob/main/examples/notebooks/%s.ipynb", "%s"),
+    "binder": (f"https://mybinder.org/v2/gh/{repository}/main?urlpath=lab/tree/%s", "%s"),
+}
+
 myst_enable_extensions = ["amsmath", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 
@@ -49,3 +58,11 @@ html_static_path = ["_static"]
 html_css_files = ["aolab.css"]
 html_show_copyright = False
 html_math_renderer = "mathml"
+
+
+def setup(app) -> None:
+    """Without execution, the gallery has no pictures, which is no mistake."""
+    app.connect(
+        "config-inited",
+        lambda _, config: config.nb_execution_mode == "off" and config.suppress_warnings.append("mystnb.glue"),
+    )

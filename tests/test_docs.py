@@ -106,6 +106,15 @@ def test_ten_lessons_are_numbered_in_the_order_of_the_index_and_each_leads_to_th
         assert f"Next: [{title}]({following})" in PAGES[f"learn/{file}"]
 
 
+def test_the_gallery_has_every_script() -> None:
+    scripts = sorted(path.name for path in (DOCS.parent / "examples").glob("*.py"))
+    offered = re.findall(r"<\.\./examples/(\w+\.py)>`", PAGES["gallery.md"])
+    assert sorted(offered) == scripts
+    drawn = re.findall(r'^thumbnail\(\s*"(\w+)\.py"', PAGES["gallery.md"], re.MULTILINE)
+    shown = re.findall(r"^```\{glue:figure\} (\w+)\n:alt: .", PAGES["gallery.md"], re.MULTILINE)
+    assert sorted(drawn) == sorted(shown)
+
+
 def test_the_python_reference_names_all_that_is_public_and_no_more() -> None:
     documented = re.findall(r"^\.\. auto\w+:: aolab\.(\w+)", PAGES["api.md"], re.MULTILINE)
     assert sorted(documented) == dir(aolab)

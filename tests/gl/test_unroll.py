@@ -43,6 +43,19 @@ def test_a_long_loop_stays_a_loop():
     assert "for (int i = 0; i < count; ++i) {" in made
 
 
+@pytest.mark.parametrize(("steps", "copies"), [(unroll.MOST_TAPS // 16, 16), (unroll.MOST_TAPS // 16 + 1, 0)])
+def test_a_loop_over_directions_stays_a_loop_if_its_directions_have_many_steps(steps, copies):
+    loop = "#pragma unroll\nfor (int i = 0; i < directions; ++i) {\n    f(i);\n}"
+    made = assemble(f"const int directions;\nconst int steps;\n{loop}\n", {"directions": 16, "steps": steps}).text
+    assert made.count("{ const int i = ") == copies
+
+
+def test_many_taps_compile():
+    """Unrolled, 256 taps took Mesa minutes."""
+    frame = aolab.render("boxes", "ssao", size=(16, 9), directions=16, steps=16)
+    assert np.isfinite(frame["visibility"][frame.mask]).all()
+
+
 def test_a_pragma_switches_it_off():
     loop = "#pragma unroll\nfor (int i = 0; i < count; ++i) {\n    f(i);\n}"
     assert "for" in text(f"#pragma unroll off  // too long\n{loop}")
