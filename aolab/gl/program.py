@@ -37,6 +37,7 @@ class Program:
     samplers: list[str] = field(init=False)
     _values: dict[str, moderngl.Uniform] = field(init=False)
     fullscreen: moderngl.VertexArray | None = None
+    seconds_a_pixel: float = 0.0  # of its last draw by a software renderer; 0 before
 
     def __post_init__(self) -> None:
         members = {name: self.gl[name] for name in self.gl}

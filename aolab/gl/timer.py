@@ -12,14 +12,14 @@ class Timer:
 
     def __init__(self) -> None:
         self._gl = context.get()
-        self._software = context.is_software()
+        self.software = context.is_software()
         self._milliseconds: dict[str, float] = {}
         self._queries: list[tuple[str, object]] = []
 
     @contextmanager
     def measure(self, name: str) -> Iterator[None]:
         """Time the GL commands issued inside."""
-        if self._software:
+        if self.software:
             start = perf_counter()
             yield
             self._gl.finish()

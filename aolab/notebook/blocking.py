@@ -93,16 +93,16 @@ def _by_voxels(seen: Surfaces, kind: Voxels, receiver: Receiver, points: np.ndar
     voxel = np.floor(_moved(to, points))
     centre = voxel + F(0.5)
     position = _moved(back, centre)
-    height = np.abs(receiver.facet @ back[:3, :3]).sum()
+    height = np.abs(np.matmul(receiver.facet, back[:3, :3])).sum()
     above = (position - receiver.position) @ receiver.facet
     away = centre - _moved(to, receiver.position)
-    own = (above < VOXELS_ABOVE * height) | ((away**2).sum(axis=-1) < VOXELS_AWAY**2)
+    own = np.logical_or(above < VOXELS_ABOVE * height, (away**2).sum(axis=-1) < VOXELS_AWAY**2)
     count = kind.voxels
-    inside = ((voxel >= 0) & (voxel < count)).all(axis=-1)
-    x, y, z = np.where(inside[..., None], voxel, 0).astype(int).transpose(-1, *range(voxel.ndim - 1))
+    inside = np.asarray(np.logical_and(voxel >= 0, voxel < count).all(axis=-1))
+    x, y, z = np.moveaxis(np.where(inside[..., None], voxel, 0).astype(int), -1, 0)
     tile = z >> 5
     words = seen.textures["voxelWords"][::-1][(tile >> 3) * count + y, (tile & 7) * count + x]
-    is_set = (words >> (z & 31).astype(np.uint32) & 1).astype(bool)
+    is_set = np.bitwise_and(np.right_shift(words, (z & 31).astype(np.uint32)), 1) == 1
     return inside & is_set & ~own, position
 
 
@@ -140,11 +140,11 @@ def _height_at(seen: Surfaces, number: int, uv: np.ndarray) -> np.ndarray:
     inside = np.stack([kinds[int(wrap[axis])](uv[..., axis]) for axis in (0, 1)], axis=-1)
     at = region[:2] + inside * region[2:] - F(0.5)
     low = np.floor(at)
-    u, v = (at - low).astype(F).transpose(-1, *range(at.ndim - 1))
+    u, v = np.moveaxis((at - low).astype(F), -1, 0)
     atlas = seen.textures["relief_atlas"][::-1]
     limit = np.array(atlas.shape[::-1]) - 1
-    x0, y0 = np.clip(low, 0, limit).astype(int).transpose(-1, *range(at.ndim - 1))
-    x1, y1 = np.clip(low + 1, 0, limit).astype(int).transpose(-1, *range(at.ndim - 1))
+    x0, y0 = np.moveaxis(np.clip(low, 0, limit).astype(int), -1, 0)
+    x1, y1 = np.moveaxis(np.clip(low + 1, 0, limit).astype(int), -1, 0)
     bottom = atlas[y0, x0] * (1 - u) + atlas[y0, x1] * u
     return bottom * (1 - v) + (atlas[y1, x0] * (1 - u) + atlas[y1, x1] * u) * v
 

@@ -9,6 +9,7 @@ import moderngl
 
 from ..errors import ShaderError, suggestion
 from ..gl import context
+from ..gl.bands import bands
 from ..gl.bindings import Bindings, Joined, joined
 from ..gl.program import FULLSCREEN, Program, Programs
 from ..gl.texture import Depth, Kept, Pool, Size
@@ -90,10 +91,12 @@ class PassRunner:
         program.set(given.uniforms, given.words)
         self.bind(program, given.textures, step.reads)
         framebuffer = self.framebuffer(program, step, outputs)
-        framebuffer.viewport = region or (0, 0, *size)
+        whole = region or (0, 0, *size)
         framebuffer.use()
         with self.timer.measure(step.name):
-            self._fullscreen(program).render(moderngl.TRIANGLES, 3)
+            for band in bands(program, whole) if self.timer.software else (whole,):
+                framebuffer.viewport = band
+                self._fullscreen(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
     def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:
