@@ -2,7 +2,7 @@
 
 import operator
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
@@ -198,10 +198,10 @@ class Lab:
             self._reload(tell_again=False)
 
     def _reload(self, **how: bool) -> list[str]:
-        """Compile the files that changed; frames that wait for their light get it from the programs before."""
+        """Compile the files that changed; frames that wait for their picture get it from the programs before."""
         if self._programs.changed():
             for frame in [*self._waiting]:
-                frame.complete()
+                frame.complete("image")
         return self._programs.reload(only_changed=True, **how)
 
     def _make_room(self, sizes: set[Size]) -> None:
@@ -261,10 +261,21 @@ class Lab:
             table=BUFFERS | {row.name: row for row in module.buffers},
             scene=scene,
             kept=kept,
-            later=Later([*lighting.names(module), *reflective], partial(self._lit, state, lights, display)),
+            later=self._later(state, lights, display, reflective),
         )
         self._waiting.add(result)
         return lend(result, self._pool, runner.lent)
+
+    def _later(
+        self, state: SurfaceState, lights: Lights | None, display: Display, reflective: Iterable[str]
+    ) -> list[Later]:
+        """The light: the picture alone, if a single pass draws it, and all buffers."""
+        module = state.frame.module
+        names = [*lighting.names(module), *reflective]
+        later = [Later(names, partial(self._lit, state, lights, display))]
+        if lighting.in_one_pass(module):
+            later.insert(0, Later(["image"], partial(self._picture, state, lights, display)))
+        return later
 
     def _lights(self, frame: FrameContext) -> Lights:
         """All that shines on the frame's scene, as its module reads it."""
@@ -290,6 +301,20 @@ class Lab:
             maps = draw_virtual_lights(frame.rasterizer, step, reflective, frame.seeds.start)
             self._virtual[step.name] = key, maps
         return self._virtual[step.name][1]
+
+    def _picture(
+        self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
+    ) -> tuple[Buffers, dict[str, float]]:
+        """The picture of a frame, and the milliseconds of its pass."""
+        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
+        state = state.under(rasterizer)
+        runner = rasterizer.runner
+        with self._lending(runner):
+            lights = lights or self._lights(state.frame)
+            buffers = lighting.image(state, lights, self._environments.of(lights.sky), display)
+            refuse_exhaustion("a picture of {}x{}".format(*state.frame.view.size))
+        lend(result, self._pool, runner.lent)
+        return buffers, runner.timer.result()
 
     def _lit(
         self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
@@ -336,7 +361,9 @@ def sampled(frame: FrameContext) -> set[str]:
     """The names of all buffers that a pass of the module, or its occluder kind, samples."""
     declared = frame.runner.programs.declared
     names = {
-        step.reads.get(name, name) for step in frame.module.all_passes() for name in declared(step.shader).samplers
+        step.reads.get(name, name)
+        for step in frame.module.all_passes()
+        for name in declared(step.shader, step.includes).samplers
     }
     if _asks_for_occluders(frame):
         for text in frame.occluders.bindings().includes.values():
@@ -367,7 +394,7 @@ def occluders(frame: FrameContext, large: Buffers) -> Occluders:
 def _asks_for_occluders(frame: FrameContext) -> bool:
     """Whether some pass of the module includes "occluders.glsl"."""
     declared = frame.runner.programs.declared
-    return any("occluders.glsl" in declared(step.shader).includes for step in frame.module.all_passes())
+    return any("occluders.glsl" in declared(step.shader, step.includes).includes for step in frame.module.all_passes())
 
 
 def _as_scene(scene: Any) -> Scene:
