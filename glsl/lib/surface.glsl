@@ -8,6 +8,7 @@ uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
 uniform vec4 ray_from_pixel;
+uniform vec2 texel_size;
 uniform mat4 world_from_view;
 
 struct Surface {
@@ -19,10 +20,10 @@ struct Surface {
 
 // Reads the surface of this fragment. Returns false in the background.
 bool surfaceHere(out Surface surface) {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float surfaceZ = texelFetch(viewZ, pixel, 0).r;
-    surface = Surface(pixel, viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel),
-                      texelFetch(viewNormal, pixel, 0).xyz, texelFetch(albedo, pixel, 0).rgb);
+    vec2 uv = gl_FragCoord.xy * texel_size;
+    float surfaceZ = texture(viewZ, uv).r;
+    surface = Surface(ivec2(gl_FragCoord.xy), viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel),
+                      texture(viewNormal, uv).xyz, texture(albedo, uv).rgb);
     return !isBackground(surfaceZ);
 }
 
