@@ -2,7 +2,7 @@
 // Ritschel, Grosch and Seidel 2009, "Approximating Dynamic Global Illumination in Image Space", section 3:
 //   L_dir(P) = Σ ρ/π L_in(ω_i) V(ω_i) cosθ_i Δω
 // Here the directions have the density cosθ/π, so that cosθ_i Δω is π/N for each, and the sum is ρ times the mean of
-// V L_in; the paper's directions are uniform. The albedo ρ enters in ssdo.ambient.frag.
+// V L_in; the paper's directions are uniform. The albedo ρ enters in ssdo.ambient.glsl.
 //
 // Inputs:  viewZ, viewNormal; prefiltered_environment, an octahedral map blurred to a sample's solid angle.
 // Outputs: open_light: rgb the mean over all directions of V L_in, linear radiance; a the visibility in [0, 1].

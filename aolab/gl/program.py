@@ -141,7 +141,7 @@ class Programs:
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
-        self._in_text: dict[str | Path, Declared] = {}
+        self._in_text: dict[object, Declared] = {}
 
     def __len__(self) -> int:
         return len(self._programs)
@@ -171,11 +171,12 @@ class Programs:
             return self._programs[key]
         return self._keep(_compile(replace(request, offered=offered())))
 
-    def declared(self, shader: str | Path) -> Declared:
+    def declared(self, shader: str | Path, aliases: Mapping[str, str] = MappingProxyType({})) -> Declared:
         """The includes and samplers of a shader, before anything is compiled."""
-        if shader not in self._in_text:
-            self._in_text[shader] = declared(shader)
-        return self._in_text[shader]
+        key = shader, tuple(aliases.items())
+        if key not in self._in_text:
+            self._in_text[key] = declared(shader, aliases)
+        return self._in_text[key]
 
     def changed(self) -> bool:
         """Whether a file of a program was written since the program was compiled."""

@@ -84,8 +84,8 @@ class Declared:
     samplers: frozenset[str]
 
 
-def declared(shader: str | Path) -> Declared:
-    """The includes and samplers of a shader. An include without a file, as of an alias, is not followed."""
+def declared(shader: str | Path, aliases: Mapping[str, str] | None = None) -> Declared:
+    """The includes and samplers of a shader; `aliases` as of `assemble`. An include without a file is not followed."""
     includes: set[str] = set()
     samplers: set[str] = set()
     waiting: list[tuple[str | Path, Path | None]] = [(shader, None)]
@@ -97,7 +97,7 @@ def declared(shader: str | Path) -> Declared:
         text = str(one) if path is None else read_text(path, _shown(path))
         names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
         samplers.update(_SAMPLER.findall(_COMMENT.sub("", text)))
-        waiting += [(name, path) for name in names - includes]
+        waiting += [((aliases or {}).get(name, name), path) for name in names - includes]
         includes |= names
     return Declared(frozenset(includes), frozenset(samplers))
 

@@ -7,11 +7,11 @@ import numpy as np
 
 from ..maths.poisson import poisson_cube
 from .base import Bias, Directions, Module, Radius, Steps, Thickness, by_name
-from .buffers import LIT, Buffer
+from .buffers import Buffer
 from .estimate import Estimate
 from .measures import MEASURES, Measure
 from .parameters import parameter
-from .passes import Pass
+from .passes import Pass, term
 from .question import Question
 from .readable import Readable
 
@@ -29,7 +29,7 @@ def _obscurance(frame: Readable, raw: str) -> np.ndarray:
 
 
 def _transfer(frame: Readable, raw: str) -> np.ndarray:
-    """(H, W, 3): equation 9; 0/0 is 0. Twin of glsl/ambient_transfer.ambient.frag."""
+    """(H, W, 3): equation 9; 0/0 is 0. Twin of glsl/ambient_transfer.light.glsl."""
     terms = frame.channels(f"transfer_terms{raw}")
     open, rest = terms[..., 3:], terms[..., :3]
     return np.divide(open, rest, out=np.zeros_like(rest), where=open > 0)
@@ -102,8 +102,7 @@ class AmbientTransfer(Module):
         if self.albedo_source == "radiance":
             share = Pass("reflected share", "ambient_transfer.share.frag", {"reflected_share": "RGBA16F"})
             steps += [share, Estimate(self.passes(), TERMS)]
-        radiance = {name: LIT[name].format for name in ("ambient", "indirect")}
-        return [*steps, Pass("ambient", "ambient_transfer.ambient.frag", radiance)]
+        return [*steps, *(term(name, "ambient_transfer.light.glsl") for name in ("ambient", "indirect"))]
 
     def sends(self) -> bool:
         return True

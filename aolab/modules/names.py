@@ -19,6 +19,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
         "light_spot_cos",
     ),
+    "the display": ("exposure", "filmic_tone"),
     "the reflective shadow maps": ("rsm_tiles", "rsm_box"),
     "the virtual lights": ("first_light", "light_count"),
     "the environment": ("irradiance_sh", "view_environment_sh"),

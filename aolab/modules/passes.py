@@ -21,7 +21,7 @@ class Pass:
     same name fills it, whatever their order. `writes` (`out` variable: buffer) and `reads` (sampler: buffer) are for
     variables whose name differs from the buffer's. `constants` are compile-time values beyond the module's parameters.
     `outside` (buffer: value) is the value that samplers read beyond the edge of an output; without it, they read the
-    nearest texel.
+    nearest texel. `includes` maps the name of an include to the file, or to the GLSL text, that stands for it.
     """
 
     name: str
@@ -31,6 +31,7 @@ class Pass:
     reads: Mapping[str, str] = field(default_factory=dict)
     writes: Mapping[str, str] = field(default_factory=dict)
     outside: Mapping[str, float] = field(default_factory=dict)
+    includes: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def outs(self) -> dict[str, str]:
@@ -59,13 +60,24 @@ class GeometryPass(Pass):
     combine: Literal["nearest", "or"] = "nearest"
 
 
+def term(name: str, function: str, constants: Mapping[str, Constant] | None = None) -> Pass:
+    """The pass that fills the buffer `name`, `direct`, `ambient` or `indirect`, by a function of the surface.
+
+    `function` is the file with that function: `vec3 directAt(Surface surface)` and so on (glsl/lib/surface.glsl). If
+    all steps of a module's lighting are terms, one pass of these functions draws its picture (pipeline/image.frag).
+    """
+    return Pass(name, TERMS[name], {name: LIT[name].format}, constants or {}, includes={f"{name}.glsl": function})
+
+
+TERMS = {name: f"pipeline/{name}.frag" for name in ("direct", "ambient", "indirect")}
+
 # The lighting of methods without their own: lights through shadow maps, the environment by its spherical harmonics
-DIRECT = Pass("direct", "pipeline/direct.frag", {"direct": LIT["direct"].format}, {"shared_light": False})
+DIRECT = term("direct", "lighting/direct.glsl", {"shared_light": False})
 # the same, times the buffer `light_share`, the share of the lights' irradiance that arrives
 SHARED_DIRECT = replace(DIRECT, constants={"shared_light": True})
 # that share, where samples on the screen fill the gap that the bias of shadow maps leaves (SSDO 2009, section 5)
 FILL = Pass("fill", "pipeline/fill.frag", {"light_share": CONTRACT["light_share"].format})
-AMBIENT = Pass("ambient", "pipeline/ambient.frag", {"ambient": LIT["ambient"].format})
+AMBIENT = term("ambient", "lighting/ambient.glsl")
 
 
 def reflect(irradiance: str, radiance: str, more: str = "") -> Pass:

@@ -12,7 +12,7 @@ from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clam
 from .buffers import LIT, Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, Pass
+from .passes import Pass, term
 from .readable import Readable
 from .reflected import note_emission
 
@@ -131,10 +131,10 @@ class S3HO(Marched):
     def lighting(self) -> list[Pass]:
         *fills, direct = self.direct()
         if self.lights == "lobes":
-            direct = replace(direct, shader="s3ho.direct.frag")
+            direct = replace(direct, includes={"direct.glsl": "s3ho.direct.glsl"})
         passes = [*fills, direct]
-        passes.append(Pass("ambient", "s3ho.ambient.frag", AMBIENT.outputs))
-        if self.indirect:
+        passes.append(term("ambient", "s3ho.ambient.glsl"))
+        if self.indirect:  # with this, a single pass for the picture would read more than 16 textures
             passes.append(Pass("indirect", "s3ho.indirect.frag", {"indirect": LIT["indirect"].format}))
         return passes
 

@@ -8,7 +8,7 @@ from ..scene.cones import SLICES, TEXELS, Cones
 from .buffers import Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, Pass
+from .passes import Pass, term
 from .readable import Readable
 
 
@@ -88,4 +88,4 @@ class SSBN(Marched):
 
     def lighting(self) -> list[Pass]:
         constants = {"cone_slices": SLICES, "cone_texels": TEXELS, **self._weights}
-        return [*self.direct(), Pass("ambient", "ssbn.ambient.frag", AMBIENT.outputs, constants)]
+        return [*self.direct(), term("ambient", "ssbn.ambient.glsl", constants)]

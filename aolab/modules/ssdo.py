@@ -12,7 +12,7 @@ from .base import Bleeding, DistanceClamp, Estimate, Senders, with_distance_clam
 from .buffers import CONTRACT, Buffer
 from .marched import Marched
 from .parameters import parameter
-from .passes import AMBIENT, SHARED_DIRECT, Pass
+from .passes import SHARED_DIRECT, Pass, term
 
 
 class SSDO(Marched):
@@ -73,7 +73,7 @@ class SSDO(Marched):
 
     def lighting(self) -> Sequence[Pass | Estimate]:
         blocked = {"blocked": self.estimator == "blocked"}
-        ambient = Pass("ambient", "ssdo.ambient.frag", AMBIENT.outputs, blocked)
+        ambient = term("ambient", "ssdo.ambient.glsl", blocked)
         if not self.light_steps:
             return [*self.direct(), ambient]
         share = {"light_share": "RGBA16F"}

@@ -108,7 +108,7 @@ def _position(camera: Camera, size: Size, pixel: tuple[int, int], view_z: float)
 
 
 def _light(scene: Scene, position: np.ndarray, window: float) -> np.ndarray:
-    """(16, 3): c_Lin at world-space `position` (3,), Eq. 4, as in glsl/s3ho.direct.frag and s3ho.ambient.frag."""
+    """(16, 3): c_Lin at world-space `position` (3,), Eq. 4, as in glsl/s3ho.direct.glsl and s3ho.ambient.glsl."""
     assert scene.environment is not None  # Scene sets it
     total = scene.environment.radiance_sh.copy()
     lobe = light_lobe(hanning(window))

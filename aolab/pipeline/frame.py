@@ -27,10 +27,10 @@ Holder = TypeVar("Holder")
 Textures = Mapping[str, moderngl.Texture | np.ndarray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Later:
     """The buffers `names` of a frame that wait until one of them is read; `make` computes them all, and their passes'
-    milliseconds.
+    milliseconds. The last `Later` of a frame computes all that is left; the others are short ways to a few buffers.
     """
 
     names: Sequence[str]
@@ -46,8 +46,9 @@ class Frame:
     settings: renderer, module, parameters, camera, size, seed, ...; `notes` the repairs and omissions. A frame keeps
     its textures until it is dropped, so that frames may be kept and compared; each costs 80 to 300 bytes a pixel.
 
-    The lighting (`direct`, `ambient`, `radiance`, `image`, ...) is computed when its first buffer is read. Its passes
-    are in `timings`, and its time in `frame_ms`, from then on; `complete()` computes it at once.
+    The lighting (`direct`, `ambient`, `radiance`, ...) is computed when its first buffer is read; of most methods, a
+    pass of its own computes `image` alone. The passes are in `timings`, and their time in `frame_ms`, from then on.
+    `complete()` computes all buffers at once, `complete("image")` the picture.
     """
 
     made: Mapping[str, moderngl.Texture | np.ndarray]  # by name; without the buffers that wait
@@ -60,32 +61,39 @@ class Frame:
     table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # describes the buffers
     scene: Scene | None = field(default=None, repr=False)  # as it was lit
     kept: Any = field(default=None, repr=False)  # for its lab, to light it again
-    later: Later | None = field(default=None, repr=False)
+    later: Sequence[Later] = field(default=(), repr=False)
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
     @property
     def buffers(self) -> list[str]:
         """The names of all buffers."""
-        return sorted({*self.made, *self.derived, *(self.later.names if self.later else ())})
+        return sorted({*self.made, *self.derived, *(name for one in self.later for name in one.names)})
 
     @property
     def textures(self) -> Textures:
         """All buffers that are not derived, by name: textures of the lab, or arrays."""
         return self.complete().made
 
-    def complete(self) -> Self:
-        """Compute the buffers that wait until they are read. Raises the errors of `Lab.render`."""
-        if self.later is not None:
-            handed(self._complete)()
+    def complete(self, *names: str) -> Self:
+        """Compute the buffers that wait until they are read: those of these names, or all.
+
+        `complete("image")` computes the picture alone, in a single pass where the method has one.
+        Raises the errors of `Lab.render`.
+        """
+        waiting = {*(names or self.buffers)} - self.made.keys() - self.derived.keys()
+        shortest = next((one for one in self.later if waiting and waiting <= {*one.names}), None)
+        if shortest is not None:
+            handed(self._compute)(shortest)
         return self
 
-    def _complete(self) -> None:
-        if self.later is None:  # another thread was faster
+    def _compute(self, one: Later) -> None:
+        """Compute the buffers of `one`; those before it in `later` are not needed any more."""
+        if one not in self.later:  # another thread was faster
             return
         start = perf_counter()
         with noting(self.notes):
-            made, timings = self.later.make(self)
-        self.made, self.later = {**self.made, **made}, None
+            made, timings = one.make(self)
+        self.made, self.later = {**made, **self.made}, self.later[self.later.index(one) + 1 :]
         for name, milliseconds in timings.items():
             self.timings[name] = self.timings.get(name, 0.0) + milliseconds
         self.frame_ms += (perf_counter() - start) * 1e3
@@ -114,7 +122,7 @@ class Frame:
 
     def channels(self, name: str) -> np.ndarray:
         """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
-        source = self.made[name] if name in self.made else self.textures[name]
+        source = self.complete(name).made[name]
         return source if isinstance(source, np.ndarray) else handed(read)(source)
 
     def once(self, name: str, make: Callable[[], np.ndarray]) -> np.ndarray:
@@ -188,7 +196,7 @@ class Frame:
     def __getstate__(self) -> dict[str, Any]:
         """The state for pickle: every buffer as an array. The pickled frame can be compared, but not lit again."""
         arrays = {name: self[name] for name in self.buffers}
-        return {**self.__dict__, "made": arrays, "derived": {}, "kept": None, "later": None, "_arrays": dict(arrays)}
+        return {**self.__dict__, "made": arrays, "derived": {}, "kept": None, "later": (), "_arrays": dict(arrays)}
 
     def _repr_png_(self) -> bytes:
         return display.frame_png(self)

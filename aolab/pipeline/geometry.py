@@ -1,6 +1,7 @@
 """Meshes and their textures on the GPU, kept for as long as the mesh lives."""
 
 import weakref
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import moderngl
@@ -11,7 +12,7 @@ from ..gl.program import Program
 from ..gl.source import Constant
 from ..gl.texture import refuse_exhaustion
 from ..scene.mesh import Mesh, Texture
-from ..scene.scene import Instance, Scene
+from ..scene.scene import Scene
 from .reliefs import ReliefStore
 from .textures import upload
 
@@ -56,6 +57,14 @@ class _GpuMesh:
     arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)  # by program
 
 
+def _placements(world_from_local: Sequence[np.ndarray], scene: Scene) -> bytes:
+    """Of each instance: the matrix as GLSL stores it, column by column, in the world of the shaders; and its number."""
+    placed = np.array(world_from_local)
+    placed[:, :3, 3] -= scene.shader_origin
+    columns = placed.transpose(0, 2, 1).reshape(-1, 16)
+    return np.column_stack([columns, np.arange(len(columns))]).astype(np.float32).tobytes()
+
+
 class Geometry:
     """Uploads what it has not seen; draws a scene, one call a mesh, instanced."""
 
@@ -64,34 +73,34 @@ class Geometry:
         self._textures: weakref.WeakKeyDictionary[Texture, dict[object, moderngl.Texture]]
         self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut, and of numbers
         self._white: moderngl.Texture | None = None
+        self._scenes: weakref.WeakKeyDictionary[Scene, Mapping[Mesh, tuple[int, bytes]]]
+        self._scenes = weakref.WeakKeyDictionary()
         self.reliefs = ReliefStore()
 
     def draw(self, scene: Scene, program: Program) -> None:
         """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`."""
-        for number, (mesh, placements) in enumerate(self._by_mesh(scene).items()):
-            gpu = self._place(mesh, placements, scene.shader_origin)
+        for number, (mesh, (count, placement)) in enumerate(self._placed(scene).items()):
+            gpu = self._place(mesh, placement)
             self._use_material(mesh, number, program, scene)
-            self._array(mesh, gpu, program).render(instances=len(placements))
+            self._array(mesh, gpu, program).render(instances=count)
 
-    @staticmethod
-    def _by_mesh(scene: Scene) -> dict[Mesh, list[Instance]]:
-        groups: dict[Mesh, list[Instance]] = {}
-        for instance in scene.instances:
-            groups.setdefault(instance.mesh, []).append(instance)
-        return groups
+    def _placed(self, scene: Scene) -> Mapping[Mesh, tuple[int, bytes]]:
+        """{mesh: its instances' count and placements}, kept for as long as the scene lives."""
+        if scene not in self._scenes:
+            groups: dict[Mesh, list[np.ndarray]] = {}
+            for instance in scene.instances:
+                groups.setdefault(instance.mesh, []).append(instance.world_from_local)
+            self._scenes[scene] = {mesh: (len(some), _placements(some, scene)) for mesh, some in groups.items()}
+        return self._scenes[scene]
 
-    def _place(self, mesh: Mesh, placements: list[Instance], centre: np.ndarray) -> _GpuMesh:
-        placed = np.array([instance.world_from_local for instance in placements])
-        placed[:, :3, 3] -= centre
-        columns = placed.transpose(0, 2, 1).reshape(-1, 16)  # GLSL stores matrices column by column
-        rows = np.column_stack([columns, np.arange(len(columns))]).astype(np.float32).tobytes()
+    def _place(self, mesh: Mesh, placement: bytes) -> _GpuMesh:
         gpu = self._meshes.get(mesh)
         if gpu is None:
-            gpu = self._meshes[mesh] = self._upload(mesh, rows)
-        elif gpu.placement != rows:
-            gpu.instances.orphan(len(rows))
-            gpu.instances.write(rows)
-            gpu.placement = rows
+            gpu = self._meshes[mesh] = self._upload(mesh, placement)
+        elif gpu.placement != placement:
+            gpu.instances.orphan(len(placement))
+            gpu.instances.write(placement)
+            gpu.placement = placement
         return gpu
 
     def _upload(self, mesh: Mesh, placement: bytes) -> _GpuMesh:

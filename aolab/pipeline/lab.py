@@ -2,7 +2,7 @@
 
 import operator
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
@@ -42,8 +42,8 @@ from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
 from .reflective import PACKED, ReflectiveMaps, draw_reflective
 from .senders import senders
-from .shadows import ShadowMaps, ShadowSettings, draw_shadows
-from .state import FrameContext, SurfaceState
+from .shadows import ShadowSettings, draw_shadows
+from .state import Asked, FrameContext, SurfaceState
 from .virtual_lights import VirtualLightMaps, draw_virtual_lights
 
 DEFAULT_SIZE = (1280, 720)
@@ -64,7 +64,8 @@ class Lab:
         context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), DepthTargets()
-        self._shadows: tuple[tuple[object, ...], ShadowMaps] | None = None
+        self._shadows: tuple[tuple[object, ...], Bindings] | None = None
+        self._seen: tuple[tuple[object, ...], View, str | None] | None = None
         self._virtual: dict[str, tuple[tuple[object, ...], VirtualLightMaps]] = {}
         self._sizes: set[Size] = set()
         self._waiting: WeakSet[Frame] = WeakSet()  # for their light
@@ -174,7 +175,7 @@ class Lab:
         camera = camera or scene.camera
         assert camera is not None  # Scene frames itself
         module = module.resolved(scene)
-        view = View(clipping.unclipped(camera, scene, size), size, scene.bounds)
+        view, reason_of_cut = self._view(camera, scene, size)
         self._make_room({view.size, view.scaled(module.scale).size})
         rasterizer = self._rasterizer(scene, last_frame(last, view))
         frame = FrameContext(rasterizer, module, view, range(seed, seed + frames))
@@ -182,12 +183,23 @@ class Lab:
         result = self._frame(self._state(frame, drawn), frame.rasterizer, display)
         if not drawn.samples:
             warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
-        elif reason := clipping.reason_of_cut(scene, view):
-            warnings.warn(reason, Notice, stacklevel=2)
+        elif reason_of_cut:
+            warnings.warn(reason_of_cut, Notice, stacklevel=2)
         if is_own(module) or self._programs.generation:  # a module of the user's own, or a shader that was edited
             for doubt in doubts(result, module.outputs):
                 warnings.warn(doubt, Notice, stacklevel=2)
         return result
+
+    def _view(self, camera: Camera, scene: Scene, size: Size) -> tuple[View, str | None]:
+        """The camera's view, and the reason why its clip planes cut the scene, if they do.
+
+        A view keeps its uniforms, and the lab keeps the view while the camera and the scene's parts stay the same.
+        """
+        key = (camera, size, scene.instances)
+        if self._seen is None or self._seen[0] != key:
+            view = View(clipping.unclipped(camera, scene, size), size, scene.bounds)
+            self._seen = key, view, clipping.reason_of_cut(scene, view)
+        return self._seen[1:]
 
     def _rasterizer(self, scene: Scene, last: Bindings) -> Rasterizer:
         """The means to draw one frame of the scene."""
@@ -199,10 +211,10 @@ class Lab:
             self._reload(tell_again=False)
 
     def _reload(self, **how: bool) -> list[str]:
-        """Compile the files that changed; frames that wait for their light get it from the programs before."""
+        """Compile the files that changed; frames that wait for their picture get it from the programs before."""
         if self._programs.changed():
             for frame in [*self._waiting]:
-                frame.complete()
+                frame.complete("image")
         return self._programs.reload(only_changed=True, **how)
 
     def _make_room(self, sizes: set[Size]) -> None:
@@ -213,13 +225,13 @@ class Lab:
 
     def _state(self, frame: FrameContext, drawn: moderngl.Query) -> SurfaceState:
         """The surfaces, whose pixels `drawn` counts, and the estimate of a module that does not depend on light."""
-        module, view, runner = frame.module, frame.view, frame.runner
+        module, view, runner, asked = frame.module, frame.view, frame.runner, all_asked(frame)
         with self._lending(runner):
             with drawn:
-                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame))
+                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame, asked))
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
-            state = SurfaceState(frame, large, small, small_view, occluders(frame, large), {})
+            state = SurfaceState(frame, asked, large, small, small_view, occluders(frame, asked, large), {})
             if not module.lit:
                 state = replace(state, estimate=estimate(state, module.estimate()))
             refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")
@@ -232,8 +244,8 @@ class Lab:
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
         module, view = frame.module, frame.view
         with self._lending(runner):
-            reflective = REFLECTIVE if reflects(frame) else ()
-            lights = self._lights(frame) if module.lit or reflective else None
+            reflective = REFLECTIVE if state.asked.reflective else ()
+            lights = self._lights(state) if module.lit or reflective else None
             if module.lit and lights is not None:
                 state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
@@ -262,19 +274,30 @@ class Lab:
             table=BUFFERS | {row.name: row for row in module.buffers},
             scene=scene,
             kept=kept,
-            later=Later([*lighting.names(module), *reflective], partial(self._lit, state, lights, display)),
+            later=self._later(state, lights, display, reflective),
         )
         self._waiting.add(result)
         return lend(result, self._pool, runner.lent)
 
-    def _lights(self, frame: FrameContext) -> Lights:
+    def _later(
+        self, state: SurfaceState, lights: Lights | None, display: Display, reflective: Iterable[str]
+    ) -> list[Later]:
+        """The light: the picture alone, if a single pass draws it, and all buffers."""
+        module = state.frame.module
+        names = [*lighting.names(module), *reflective]
+        later = [Later(names, partial(self._lit, state, lights, display))]
+        if lighting.in_one_pass(module):
+            later.insert(0, Later(["image"], partial(self._picture, state, lights, display)))
+        return later
+
+    def _lights(self, state: SurfaceState) -> Lights:
         """All that shines on the frame's scene, as its module reads it."""
-        scene, module = frame.scene, frame.module
+        frame, scene, module = state.frame, state.frame.scene, state.frame.module
         assert scene.environment is not None  # Scene fills it in
         tables = self._environments.tables(scene.environment, module.tables())
-        lamps = lighting.lamps(scene, self._shadow_maps(frame.rasterizer, ShadowSettings.of(module)))
+        lamps = self._lamps(frame.rasterizer, ShadowSettings.of(module))
         reflective = None
-        if reflects(frame):
+        if state.asked.reflective:
             reflective = draw_reflective(frame.rasterizer, lamps, int(module.numbers().get("rsm_resolution", MAP_SIZE)))
         steps = [step for step in module.lighting() if isinstance(step, VirtualLights)]
         virtual = {step.name: self._virtual_lights(frame, step, reflective) for step in steps}
@@ -292,6 +315,20 @@ class Lab:
             self._virtual[step.name] = key, maps
         return self._virtual[step.name][1]
 
+    def _picture(
+        self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
+    ) -> tuple[Buffers, dict[str, float]]:
+        """The picture of a frame, and the milliseconds of its pass."""
+        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
+        state = state.under(rasterizer)
+        runner = rasterizer.runner
+        with self._lending(runner):
+            lights = lights or self._lights(state)
+            buffers = lighting.image(state, lights, self._environments.of(lights.sky), display)
+            refuse_exhaustion("a picture of {}x{}".format(*state.frame.view.size))
+        lend(result, self._pool, runner.lent)
+        return buffers, runner.timer.result()
+
     def _lit(
         self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
     ) -> tuple[Buffers, dict[str, float]]:
@@ -300,7 +337,7 @@ class Lab:
         state = state.under(rasterizer)
         runner, view = rasterizer.runner, state.frame.view
         with self._lending(runner):
-            lights = lights or self._lights(state.frame)
+            lights = lights or self._lights(state)
             buffers = lighting.light(state, lights)
             if bounce := state.frame.module.bounce():
                 sender, sending = senders(state, buffers, lights)
@@ -325,50 +362,42 @@ class Lab:
             self._pool.give_back(runner.lent)
             raise
 
-    def _shadow_maps(self, rasterizer: Rasterizer, settings: ShadowSettings) -> ShadowMaps:
-        """Kept while instances and lights are the same objects: a still scene's shadows are drawn once."""
+    def _lamps(self, rasterizer: Rasterizer, settings: ShadowSettings) -> Bindings:
+        """The lamps with their shadow maps, kept while instances and lights are the same objects.
+
+        The shadows of a still scene are drawn once.
+        """
         key = (rasterizer.scene.instances, rasterizer.scene.lights, settings, self._programs.generation)
         if self._shadows is None or self._shadows[0] != key:
-            self._shadows = key, draw_shadows(rasterizer, settings)
+            self._shadows = key, lighting.lamps(rasterizer.scene, draw_shadows(rasterizer, settings))
         return self._shadows[1]
 
 
-def sampled(frame: FrameContext) -> set[str]:
-    """The names of all buffers that a pass of the module, or its occluder kind, samples."""
-    declared = frame.runner.programs.declared
-    names = {
-        step.reads.get(name, name) for step in frame.module.all_passes() for name in declared(step.shader).samplers
-    }
-    if _asks_for_occluders(frame):
+def all_asked(frame: FrameContext) -> Asked:
+    """All that the passes of the frame's module, and its occluder kind, read."""
+    declared, passes = frame.runner.programs.declared, frame.module.all_passes()
+    names = {step.reads.get(name, name) for step in passes for name in declared(step.shader, step.includes).samplers}
+    asks_for_occluders = any("occluders.glsl" in declared(step.shader, step.includes).includes for step in passes)
+    if asks_for_occluders:
         for text in frame.occluders.bindings().includes.values():
             names |= declared(text).samplers
     lights = [step.samples for step in frame.module.lighting() if isinstance(step, VirtualLights)]
-    return names.union(*lights)
+    names = names.union(*lights)
+    return Asked(frozenset(names), asks_for_occluders, bool(names & {*REFLECTIVE, PACKED}))
 
 
-def reflects(frame: FrameContext) -> bool:
-    """Whether the module samples the reflective shadow maps."""
-    return bool(sampled(frame) & {*REFLECTIVE, PACKED})
-
-
-def surface_formats(frame: FrameContext) -> dict[str, str]:
+def surface_formats(frame: FrameContext, asked: Asked) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
-    names = sampled(frame) - {"facetNormal"}  # drawn if the scene needs it
+    names = asked.buffers - {"facetNormal"}  # drawn if the scene needs it
     names |= {"geometricNormal"} if frame.scene.bends_normals else set()
     return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
 
 
-def occluders(frame: FrameContext, large: Buffers) -> Occluders:
+def occluders(frame: FrameContext, asked: Asked, large: Buffers) -> Occluders:
     """The occluders of the module's choice; nothing is drawn where no pass of the module includes "occluders.glsl"."""
-    if not _asks_for_occluders(frame):
+    if not asked.occluders:
         return Occluders(frame.occluders.bindings())
     return frame.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
-
-
-def _asks_for_occluders(frame: FrameContext) -> bool:
-    """Whether some pass of the module includes "occluders.glsl"."""
-    declared = frame.runner.programs.declared
-    return any("occluders.glsl" in declared(step.shader).includes for step in frame.module.all_passes())
 
 
 def _as_scene(scene: Any) -> Scene:

@@ -11,7 +11,7 @@ from ..gl.bindings import Bindings
 from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.estimate import Estimate
-from ..modules.passes import Pass, reflect
+from ..modules.passes import TERMS, Pass, reflect
 from ..modules.virtual_lights import VirtualLights
 from ..scene.environment import Environment
 from ..scene.lights import DirectionalLight, PointLight, SpotLight
@@ -27,6 +27,8 @@ from .virtual_lights import VirtualLightMaps, irradiance
 ToneMap = Literal["filmic", "linear"]
 
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {name: LIT[name].format for name in ("radiance", "image")})
+
+_IMAGE = Pass("image", "pipeline/image.frag", {"image": LIT["image"].format})
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
 
@@ -123,7 +125,7 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
 
 def _included(state: SurfaceState, step: Pass) -> Iterator[Bindings]:
     """The shader text that other parts give, where the pass includes it: each is compiled in, so that others do not."""
-    includes = state.frame.runner.programs.declared(step.shader).includes
+    includes = state.frame.runner.programs.declared(step.shader, step.includes).includes
     if "occluders.glsl" in includes:
         yield state.occluders.bindings
     if "openness.glsl" in includes:
@@ -137,6 +139,39 @@ def bounced(runner: PassRunner, surfaces: Buffers, lit: Buffers, bounce: Buffers
     return runner.run(reflect("bounce", "indirect", more), [Bindings("the bounce", known)], view.size)
 
 
+def in_one_pass(module: Module) -> bool:
+    """Whether `image` draws the module's picture: all lighting steps are terms, which no bounce reads."""
+    return module.bounce() is None and all(
+        isinstance(step, Pass) and step.shader == TERMS.get(step.name) for step in module.lighting()
+    )
+
+
+def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display) -> Buffers:
+    """`image` in one pass, of a module for which `in_one_pass` is true."""
+    frame, surfaces = state.frame, state.large
+    terms = [step for step in frame.module.lighting() if isinstance(step, Pass)]
+    given = [
+        Bindings("the surfaces", {"emission": surfaces["albedo"], **surfaces}),  # samplers must be bound
+        Bindings("the estimate", state.estimate),
+        frame.parameters,
+        *lights.seen_from(frame.view),
+        *(Bindings(f"the pass '{one.name}'", constants=one.constants, includes=one.includes) for one in terms),
+        *_shown(environment, frame.view, display),
+    ]
+    has = {"has_emission": "emission" in surfaces}
+    includes = {} if any(one.name == "indirect" for one in terms) else {"indirect.glsl": "lighting/no_indirect.glsl"}
+    return frame.runner.run(replace(_IMAGE, constants=has, includes=includes), given, frame.view.size)
+
+
+def _shown(environment: moderngl.Texture, view: View, display: Display) -> Sequence[Bindings]:
+    """The values that both ways to the picture read."""
+    return (
+        Bindings("the environment's map", {"environment": environment}),
+        Bindings("the view", uniforms=view.uniforms, constants=view.constants),
+        Bindings("the display", {}, {"exposure": display.exposure}, {"filmic_tone": display.tone_map == "filmic"}),
+    )
+
+
 def compose(
     runner: PassRunner, buffers: Buffers, environment: moderngl.Texture, view: View, display: Display
 ) -> Buffers:
@@ -145,10 +180,7 @@ def compose(
     optional = {name: buffers.get(name, buffers["ambient"]) for name in ("indirect", "emission")}
     given = [
         Bindings("the frame", {**summands, **optional}),
-        Bindings("the environment", {"environment": environment}),
-        Bindings("the view", uniforms=view.uniforms, constants=view.constants),
-        Bindings("the display", uniforms={"exposure": display.exposure}),
+        *_shown(environment, view, display),
     ]
     has = {f"has_{name}": name in buffers for name in optional}
-    constants = {**has, "filmic_tone": display.tone_map == "filmic"}
-    return runner.run(replace(_COMPOSE, constants=constants), given, view.size)
+    return runner.run(replace(_COMPOSE, constants=has), given, view.size)

@@ -85,7 +85,7 @@ class PassRunner:
         `targets`, where given, are drawn into in place of new textures. Raises `ParameterError` for a name that two of
         the bindings give, and `ShaderError`.
         """
-        given = joined((*bindings, *_constants(step)), f"pass '{step.name}'")
+        given = joined((*bindings, *_own(step)), f"pass '{step.name}'")
         program = self.program(step, given)
         outputs = targets or self.targets(step, size)
         program.set(given.uniforms, given.words)
@@ -174,5 +174,7 @@ def declarations(given: Joined) -> dict[str, str]:
     return {**values, **on_demand, **textures}
 
 
-def _constants(step: Pass) -> list[Bindings]:
-    return [Bindings(f"the pass '{step.name}'", constants=step.constants)] if step.constants else []
+def _own(step: Pass) -> list[Bindings]:
+    if not step.constants and not step.includes:
+        return []
+    return [Bindings(f"the pass '{step.name}'", constants=step.constants, includes=step.includes)]

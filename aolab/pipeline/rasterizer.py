@@ -122,7 +122,7 @@ class Rasterizer:
             mesh,
             self.reliefs(),
             self.last,
-            Bindings(f"the pass '{step.name}'", constants=step.constants),
+            Bindings(f"the pass '{step.name}'", constants=step.constants, includes=step.includes),
         ]
         views = [Bindings("the view", uniforms=one.uniforms, constants=one.constants) for one in viewpoints]
         given = [joined([*own, view], f"pass '{step.name}'") for view in views]

@@ -72,6 +72,17 @@ class FrameContext:
         return Bindings("the samples", uniforms=self.module.samples(seed))
 
 
+@dataclass(frozen=True)
+class Asked:
+    """All that the passes of a module and its occluder kind read: the `buffers` that they sample, whether some of these
+    belong to `reflective` shadow maps, and whether a pass includes "occluders.glsl".
+    """
+
+    buffers: frozenset[str]
+    occluders: bool
+    reflective: bool
+
+
 @dataclass(frozen=True, eq=False)
 class SurfaceState:
     """The surfaces and the estimate of a frame. They do not depend on light, so that the frame can be lit again.
@@ -81,6 +92,7 @@ class SurfaceState:
     """
 
     frame: FrameContext
+    asked: Asked
     large: Buffers
     small: Buffers
     small_view: View

@@ -155,7 +155,7 @@ class Scene:
         """(3,) float64: the middle of the bounds, world space."""
         return self.bounds.mean(axis=0)
 
-    @property
+    @cached_property
     def shader_origin(self) -> np.ndarray:
         """(3,) float64: the point of world space that is the origin of the shaders' world; see `view.shader_origin`."""
         return shader_origin(self.bounds)

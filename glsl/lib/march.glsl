@@ -23,10 +23,11 @@ const float OPEN = 2.0;   // larger than any share of a reach
 // Computes the receiver of this fragment, for points within `reach`, scene units. Returns false in the background.
 bool receiverHere(out Receiver receiver, float reach) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    float centreZ = texelFetch(viewZ, pixel, 0).r;
+    vec2 uv = gl_FragCoord.xy * texel_size;
+    float centreZ = texture(viewZ, uv).r;
     if (isBackground(centreZ)) return false;
-    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec3 normal = texture(viewNormal, uv).xyz;
+    vec3 facet = texture(facetNormal, uv).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     viewPos += facet * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
 #ifdef RECEIVER_ON_RELIEF

@@ -14,20 +14,21 @@ uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
+uniform vec2 texel_size;
 
 const int REACH = 4;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    ivec2 last = textureSize(viewZ, 0) - 1;
-    float centreZ = texelFetch(viewZ, pixel, 0).r;
-    mat4 sum = sourcesAt(pixel);
+    vec2 uv = gl_FragCoord.xy * texel_size;
+    vec2 uvStep = vertical ? vec2(0.0, texel_size.y) : vec2(texel_size.x, 0.0);
+    float centreZ = texture(viewZ, uv).r;
+    mat4 sum = sourcesAt(uv);
     writeResults(sum);
     if (isBackground(centreZ)) return;
 
-    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 normal = texture(viewNormal, uv).xyz;
     vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
-    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec3 facet = texture(facetNormal, uv).xyz;
     vec2 dotRay = vec2(dot(facet.xy, ray), dot(normal.xy, ray));
     vec2 upward = vec2(facet.z, normal.z);
     vec2 planeOffset = alongNormals(dotRay, upward, centreZ);
@@ -37,10 +38,10 @@ void main() {
     float weights = 1.0;
     #pragma unroll
     for (int i = -REACH; i <= REACH; ++i) {
-        ivec2 other = clamp(pixel + (vertical ? ivec2(0, i) : ivec2(i, 0)), ivec2(0), last);
-        float otherZ = texelFetch(viewZ, other, 0).r;
+        vec2 other = uv + float(i) * uvStep;
+        float otherZ = texture(viewZ, other).r;   // beyond the edge, that of the background
         float plane = nearerPlane(alongNormals(dotRay + float(i) * rayStep, upward, otherZ) - planeOffset) / tolerance;
-        float alike = max(dot(normal, texelFetch(viewNormal, other, 0).xyz), 0.0);
+        float alike = max(dot(normal, texture(viewNormal, other).xyz), 0.0);
         float share = i == 0 ? 0.0 : abs(i) == REACH ? 0.5 : 1.0;  // the centre is in the sum already
         // the background's plane distance is infinite
         float weight = abs(plane) < 1.0 ? share * (1.0 - plane * plane) * pow(alike, 8.0) : 0.0;

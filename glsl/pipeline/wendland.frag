@@ -17,29 +17,30 @@ const int filter_size;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform vec4 ray_from_pixel;
+uniform vec2 texel_size;
 uniform float filter_distance;
 
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    ivec2 last = textureSize(viewZ, 0) - 1;
-    float centreZ = texelFetch(viewZ, pixel, 0).r;
-    mat4 centre = sourcesAt(pixel);
+    vec2 uv = gl_FragCoord.xy * texel_size;
+    vec2 way = vertical ? vec2(0.0, 1.0) : vec2(1.0, 0.0);   // pixels
+    float centreZ = texture(viewZ, uv).r;
+    mat4 centre = sourcesAt(uv);
     writeResults(centre);
     if (isBackground(centreZ)) return;
 
     vec3 centrePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
+    vec3 normal = texture(viewNormal, uv).xyz;
     float farthest = filter_distance * -centreZ;
     mat4 sum = mat4(0.0);
     vec4 weights = vec4(0.0);
     for (int i = -filter_size / 2; i <= filter_size / 2; ++i) {
-        ivec2 other = pixel + (vertical ? ivec2(0, i) : ivec2(i, 0));
-        if (any(lessThan(other, ivec2(0))) || any(greaterThan(other, last))) continue;
-        float otherZ = texelFetch(viewZ, other, 0).r;
-        if (isBackground(otherZ)) continue;
-        vec3 otherPos = viewPosAt(vec2(other) + 0.5, otherZ, ray_from_pixel);
+        vec2 otherPixel = gl_FragCoord.xy + float(i) * way;
+        vec2 other = otherPixel * texel_size;
+        float otherZ = texture(viewZ, other).r;
+        if (isBackground(otherZ)) continue;   // or beyond the edge
+        vec3 otherPos = viewPosAt(otherPixel, otherZ, ray_from_pixel);
         float weight = wendland(abs(float(i)), float(filter_size));                                  // Eq. 6
-        weight *= wendland(1.0 - dot(normal, texelFetch(viewNormal, other, 0).xyz), 2.0);            // Eq. 7
+        weight *= wendland(1.0 - dot(normal, texture(viewNormal, other).xyz), 2.0);            // Eq. 7
         weight *= wendland(distance(centrePos, otherPos), farthest);
         mat4 value = sourcesAt(other);
         for (int k = 0; k < sources; ++k) {

@@ -37,10 +37,10 @@ EDITS = {
     # the environment
     "one direction for all": (("ssdo.frag", "octahedralUv(worldFrame * kernel[i].xyz)", "vec2(0.5)"),),
     "the other side's light": (("ssdo.frag", "* kernel[i].xyz", "* (kernel[i].xyz * vec3(-1.0, -1.0, 1.0))"),),
-    "green light for all colours": (("s3ho.ambient.frag", "view_environment_sh[i]", "view_environment_sh[1]"),),
+    "green light for all colours": (("s3ho.ambient.glsl", "view_environment_sh[i]", "view_environment_sh[1]"),),
     # SSAO
-    "occlusion of red alone": (("pipeline/ambient.frag", "* open", "* vec3(open, 1.0, 1.0)"),),
-    "occlusion of strong light": (("pipeline/ambient.frag", "* open", "* mix(1.0, open, min(irradiance.b, 1.0))"),),
+    "occlusion of red alone": (("lighting/ambient.glsl", "* open", "* vec3(open, 1.0, 1.0)"),),
+    "occlusion of strong light": (("lighting/ambient.glsl", "* open", "* mix(1.0, open, min(irradiance.b, 1.0))"),),
     # S3HO
     "two bands": (
         ("s3ho.transfer.glsl", "return withinBounds(", "return shWindow("),
@@ -48,7 +48,7 @@ EDITS = {
     ),
     "half the occlusion": (("s3ho.transfer.glsl", "- blocked)", "- 0.5 * blocked)"),),
     "a quarter of the samples": (("s3ho.moments.frag", ADD, f"if (i % 4 == 0) for (int k = 0; k < 4; ++k) {ADD}"),),
-    "no lobes": (("s3ho.direct.frag", LOBE, "max(dot(normal, viewToLight), 0.0)"),),
+    "no lobes": (("s3ho.direct.glsl", LOBE, "max(dot(normal, viewToLight), 0.0)"),),
     # ambient transfer
     "half the distances": (("ambient_transfer.frag", "/ float(steps));", "/ float(2 * steps));"),),
     "linear in place of the square root": (("measures/sqrt.glsl", "return share * share;", "return share;"),),
@@ -70,7 +70,7 @@ EDITS = {
     ),
     "no relief": (("occluders/height.glsl", "< obstacle;", "< -1e9 * (1.0 + abs(obstacle));"),),
     # SSBN
-    "cones around the normal": (("ssbn.ambient.frag", "> 1e-12 ? bent", "> 1e-12 ? worldNormal"),),
+    "cones around the normal": (("ssbn.ambient.glsl", "> 1e-12 ? bent", "> 1e-12 ? worldNormal"),),
     # HAO
     "no voxels": (("lib/voxel_grid.glsl", ">> uint(voxel.z & 31)) & 1u) == 1u", ">> uint(voxel.z & 31)) & 1u) > 1u"),),
     "half of the slices": (

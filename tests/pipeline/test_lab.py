@@ -327,7 +327,7 @@ def test_watching_sees_edits_of_lighting_shaders(shaders, boxes):
     lab = aolab.Lab((32, 24), watch=True)
     frame = lab.render(boxes, "s3ho")
     assert frame["ambient"].max() > 0.1
-    path = shaders / "s3ho.ambient.frag"
+    path = shaders / "s3ho.ambient.glsl"
     path.write_text(path.read_text().replace("irradiance = max(irradiance, 0.0);", "irradiance = vec3(0.0);"))
     os.utime(path, (0, 0))
     assert lab.relight(frame)["ambient"].max() == 0

@@ -31,7 +31,8 @@ class Filter(Choice):
 def over_sources(name: str, shader: str, formats: Mapping[str, str], **constants: bool | int | float) -> Pass:
     """A pass that treats up to four buffers alike: it reads them as sources and writes each as a result."""
     writes = {f"results[{number}]": buffer for number, buffer in enumerate(formats)}
-    return Pass(titled(name, formats), shader, formats, {"sources": len(formats), **constants}, writes=writes)
+    counts = {"sources": len(formats), "single": [*formats.values()] in (["R8"], ["R16F"], ["R32F"])}
+    return Pass(titled(name, formats), shader, formats, {**counts, **constants}, writes=writes)
 
 
 def titled(what: str, names: Mapping[str, str]) -> str:

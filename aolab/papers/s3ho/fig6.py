@@ -66,7 +66,7 @@ def fig6(size: Size = (320, 180), rays: int = 128) -> Figure:
 
 
 def _lit(truth: Frame) -> np.ndarray:
-    """(H, W, 3): S3HO's radiance from the truth's coefficients; the twin of s3ho.ambient.frag and s3ho.direct.frag."""
+    """(H, W, 3): S3HO's radiance from the truth's coefficients; the twin of s3ho.ambient.glsl and s3ho.direct.glsl."""
     assert truth.scene is not None  # the reference has one
     assert truth.scene.environment is not None  # Scene fills it in
     transfer = np.concatenate([truth[name] for name in HARMONICS], axis=-1)

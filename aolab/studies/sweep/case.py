@@ -224,7 +224,7 @@ def render(case: Case) -> Frame:
 def _warm(frame: Frame, case: Case) -> Frame:
     """The same frame again, with the same buffers computed: its times contain no compilation of shaders."""
     again = render(case)
-    return again if frame.later else again.complete()
+    return again.complete(*frame.made)
 
 
 def run(case: Case, settings: Settings, name: str = "") -> tuple[dict[str, Any], dict[str, bytes]]:

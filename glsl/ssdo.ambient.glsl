@@ -4,36 +4,25 @@
 //             that the blocked directions hold. Its mean is that of the plain sum, but for the blur of L_in, which
 //             cancels. It has no noise where all is open or all is blocked, and is never negative.
 //
-// Inputs:  viewNormal, albedo, open_light; if `blocked`, all_light and open_irradiance, E_open/π by the normal.
-// Output:  ambient, linear RGB radiance.
+// Inputs:  the surface; open_light; if `blocked`, all_light and open_irradiance, E_open/π by the normal.
 
 #include "lib/environment.glsl"
 
 const bool blocked;
 
-uniform sampler2D viewNormal;
-uniform sampler2D albedo;
 uniform sampler2D open_light;
 uniform sampler2D all_light;
 uniform sampler2D open_irradiance;
-uniform mat4 world_from_view;
 
-out vec4 ambient;
-
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 surfaceAlbedo = texelFetch(albedo, pixel, 0);
-    ambient = vec4(0.0);
-    if (surfaceAlbedo.a == 0.0) return;  // background
-
-    vec4 open = texelFetch(open_light, pixel, 0);
+vec3 ambientAt(Surface surface) {
+    vec4 open = texelFetch(open_light, surface.pixel, 0);
     vec3 arriving = open.rgb;  // irradiance / π
     if (blocked) {
-        vec3 all = texelFetch(all_light, pixel, 0).rgb;
+        vec3 all = texelFetch(all_light, surface.pixel, 0).rgb;
         // a colour that no direction met has no share: the visibility stands in
         vec3 openShare = mix(vec3(open.a), open.rgb / max(all, 1e-30), greaterThan(all, vec3(0.0)));
-        vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
-        arriving = openShare * texture(open_irradiance, irradianceUv(worldNormal, textureSize(open_irradiance, 0))).rgb;
+        vec2 uv = irradianceUv(worldNormalOf(surface), textureSize(open_irradiance, 0));
+        arriving = openShare * texture(open_irradiance, uv).rgb;
     }
-    ambient = vec4(surfaceAlbedo.rgb * arriving, 1.0);
+    return surface.albedo * arriving;
 }

@@ -7,9 +7,9 @@
 //   ∫ cosθ dω / ∫ dω = 1/2 (1 + c)                       for uniform directions.
 // An open surface has c = 0 and receives exactly the environment's irradiance.
 //
-// Inputs:  viewNormal (view space); albedo (linear RGB, alpha 0 in the background); blocked_direction (ssbn.frag);
-//          cone_environment: mean radiance in cones, linear RGB (aolab/scene/cones.py).
-// Output:  ambient, linear RGB radiance: albedo × visibility × mean radiance.
+// L = albedo × visibility × mean radiance.
+// Inputs:  the surface; blocked_direction (ssbn.frag); cone_environment: mean radiance in cones, linear RGB
+//          (aolab/scene/cones.py).
 
 #include "lib/octahedral.glsl"
 #include "lib/constants.glsl"
@@ -18,13 +18,8 @@ const bool uniform_weights;
 const int cone_slices;     // slices of the table, from the narrowest cone to the hemisphere
 const int cone_texels;     // width of a slice, without its border of one texel
 
-uniform sampler2D viewNormal;
-uniform sampler2D albedo;
 uniform sampler2D blocked_direction;
 uniform sampler2D cone_environment;
-uniform mat4 world_from_view;
-
-out vec4 ambient;
 
 // The mean radiance in the cone around `worldDir`; `angle`: its half angle as a share of a right angle.
 vec3 radianceInCone(vec3 worldDir, float angle) {
@@ -37,14 +32,9 @@ vec3 radianceInCone(vec3 worldDir, float angle) {
     return mix(narrow, wide, slice - lower);
 }
 
-void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 surfaceAlbedo = texelFetch(albedo, pixel, 0);
-    ambient = vec4(0.0);
-    if (surfaceAlbedo.a == 0.0) return;  // background
-
-    vec3 worldNormal = mat3(world_from_view) * texelFetch(viewNormal, pixel, 0).xyz;
-    vec4 blocked = texelFetch(blocked_direction, pixel, 0);
+vec3 ambientAt(Surface surface) {
+    vec3 worldNormal = worldNormalOf(surface);
+    vec4 blocked = texelFetch(blocked_direction, surface.pixel, 0);
     // visibility, (1/π) ∫ V cosθ dω; for uniform directions it follows from the component of b along the normal
     float visibility = clamp(1.0 - (uniform_weights ? 2.0 * dot(blocked.xyz, worldNormal) : blocked.w), 0.0, 1.0);
     vec3 bent = (uniform_weights ? 1.0 / 2.0 : 2.0 / 3.0) * worldNormal - blocked.xyz;
@@ -54,5 +44,5 @@ void main() {
     float angle = acos(min(cosine, 1.0)) * (2.0 / PI);
     // nothing open: b has no direction, and visibility is 0 in any direction
     vec3 direction = dot(bent, bent) > 1e-12 ? bent : worldNormal;
-    ambient = vec4(surfaceAlbedo.rgb * visibility * radianceInCone(direction, angle), 1.0);
+    return surface.albedo * visibility * radianceInCone(direction, angle);
 }
