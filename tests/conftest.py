@@ -34,7 +34,7 @@ PAPERS = CHECKOUT / "tests" / "papers"
 # files whose slow tests start programs, kernels or clusters, or draw for many seconds: `make long`
 LONG = (
     "test_readme", "test_bake", "test_interrupts", "test_notebooks", "test_claims", "test_reproduce", "test_sweep",
-    "test_quality", "test_wheel", "test_jupyterlab",
+    "test_quality", "test_wheel", "test_jupyterlab", "test_otter", "test_grade", "test_measuring",
 )  # fmt: skip
 
 

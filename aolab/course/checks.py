@@ -61,7 +61,7 @@ def surface(frame: Frame, buffer: str) -> np.ndarray:
 
 def whole(frame: Frame, buffer: str) -> np.ndarray:
     """(H, W[, channels]) float64: a buffer with its background, which no NaN marks where a shader has filled it."""
-    pixels = frame.channels(buffer) if buffer in frame.made else frame[buffer]
+    pixels = frame[buffer] if buffer in frame.derived else frame.channels(buffer)
     return pixels / 255.0 if pixels.dtype == np.uint8 else pixels.astype(np.float64)
 
 

@@ -88,9 +88,9 @@ class Cause(_Check):
     scene: str
     module: str
     buffer: str = "visibility"
-    size: tuple[int, int] = (160, 90)
+    size: tuple[int, int] = (96, 54)
     rays: int = Field(64, ge=2)
-    among: tuple[str, ...] = ()  # the parts to choose from; empty is all of them
+    frames: int = Field(16, ge=1)
     within: float = Field(0.8, gt=0, le=1)  # of the largest share
 
 
@@ -101,7 +101,7 @@ class Value(_Check):
     answer: str
     scene: str
     module: str
-    size: tuple[int, int] = (160, 90)
+    size: tuple[int, int] = (96, 54)
     rays: int = Field(64, ge=2)
     tolerance: float = Field(0.1, gt=0)
 
@@ -118,7 +118,7 @@ class Best(_Check):
     module: str
     parameters: tuple[str, ...]
     choices: tuple[tuple[float, ...], ...]
-    size: tuple[int, int] = (160, 90)
+    size: tuple[int, int] = (96, 54)
     rays: int = Field(64, ge=2)
     within: float = Field(1.1, ge=1)
 

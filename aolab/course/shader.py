@@ -66,7 +66,7 @@ def function(text: str, name: str) -> Function:
     known = functions(text)
     named = [one for one in known if name in (one.name, one.signature)]
     if not named:
-        raise ParameterError(f"the function '{name}' is missing{suggestion(name, [one.signature for one in known])}")
+        raise ParameterError(f"the function '{name}' is missing{suggestion(name, {one.name for one in known})}")
     if len(named) > 1:
         raise ParameterError(f"several functions are '{name}': {', '.join(one.signature for one in named)}")
     return named[0]

@@ -1,8 +1,7 @@
 """Every exercise: its solution has all points, its holes have none, and each known mistake is named."""
 
-from pathlib import Path
-
 import pytest
+from students import hand_in
 
 from aolab import course
 from aolab.course import shader as glsl
@@ -14,14 +13,6 @@ NAMES = exercise_names()
 WRITTEN = [name for name in NAMES if course.exercise(name).spec.shaders]
 MISTAKES = [(name, step.name, mistake.name) for name in WRITTEN for step in course.exercise(name).spec.steps
             for mistake in step.mistakes]  # fmt: skip
-
-
-def hand_in(folder: Path, name: str, texts: dict[str, str]) -> Path:
-    """A student's folder with these shaders."""
-    course.start(name, folder)
-    for file, text in texts.items():
-        (folder / Path(file).name).write_text(text)
-    return folder
 
 
 @pytest.mark.parametrize("name", WRITTEN)
