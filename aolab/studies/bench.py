@@ -57,16 +57,16 @@ def frames(scene_name: str, size: Size, repeats: int) -> Result:
 
 
 def _module(lab: Lab, scene: Scene, module: Module, size: Size, repeats: int) -> Result:
-    lab.render(scene, module, size=size).complete()  # compiles the shaders
-    measured = [lab.render(scene, module, size=size).complete() for _ in range(repeats)]
+    lab.render(scene, module, size=size).complete("image")  # compiles the shaders
+    measured = [lab.render(scene, module, size=size).complete("image") for _ in range(repeats)]
     passes = {name: summary([frame.timings[name] for frame in measured]) for name in measured[0].timings}
     return {"passes": passes, "frame": summary([frame.frame_ms for frame in measured])}
 
 
 def _python_share(lab: Lab, scene: Scene, repeats: int) -> dict[str, float]:
     """The share of a warm frame outside of all passes, in percent."""
-    lab.render(scene, "ssao", size=SMALL).complete()
-    measured = [lab.render(scene, "ssao", size=SMALL).complete() for _ in range(repeats)]
+    lab.render(scene, "ssao", size=SMALL).complete("image")
+    measured = [lab.render(scene, "ssao", size=SMALL).complete("image") for _ in range(repeats)]
     return summary([100 * (1 - sum(frame.timings.values()) / frame.frame_ms) for frame in measured])
 
 

@@ -66,8 +66,8 @@ def _cases(size: Size) -> dict[str, list[Case]]:
 
 def _measured(lab: Lab, settings: list[Case], repeats: int) -> Iterator[tuple[int, dict[str, float]]]:
     for count, scene, module, pixels in settings:
-        lab.render(scene, module, size=pixels).complete()  # compiles shaders, uploads, draws shadow maps
-        frames = [lab.render(scene, module, size=pixels).complete() for _ in range(repeats)]
+        lab.render(scene, module, size=pixels).complete("image")  # compiles shaders, uploads, draws shadow maps
+        frames = [lab.render(scene, module, size=pixels).complete("image") for _ in range(repeats)]
         parts = [_parts(frame.timings, frame.frame_ms) for frame in frames]
         yield count, {name: statistics.median(one[name] for one in parts) for name in parts[0]}
 

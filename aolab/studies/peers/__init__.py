@@ -179,6 +179,6 @@ class _Ours:
     def milliseconds(self, occlusion: bool) -> float:
         """The time of a frame, with or without ambient occlusion."""
         start = perf_counter()
-        self._lab.render(self._scene, self._module if occlusion else "none").complete()
+        self._lab.render(self._scene, self._module if occlusion else "none").complete("image")
         context.get().finish()
         return (perf_counter() - start) * 1e3
