@@ -12,7 +12,7 @@ from PIL import Image
 CHECKOUT = Path(__file__).parents[1]
 SCRIPTS = "Scripts" if os.name == "nt" else "bin"
 # variables that would lead the installed package, or pip, back to the checkout
-LEADS_BACK = {"PYTHONPATH", "AOLAB_GLSL", "AOLAB_SCENES", "VIRTUAL_ENV"}
+LEADS_BACK = {"PYTHONPATH", "AOLAB_GLSL", "AOLAB_SCENES", "AOLAB_EXERCISES", "VIRTUAL_ENV"}
 
 
 def run(*command: str | Path, cwd: Path) -> str:
@@ -58,14 +58,16 @@ def test_the_installed_wheel_traces_rays_and_measures_errors(installed: Path, tm
 
 
 @pytest.mark.wheel
-@pytest.mark.parametrize("folder", ["glsl", "scenes"])
-def test_the_installed_wheel_carries_its_own_files(installed: Path, tmp_path: Path, folder: str) -> None:
+@pytest.mark.parametrize(
+    ("folder", "source"), [("glsl", "glsl"), ("scenes", "scenes"), ("exercises", "examples/exercises")]
+)
+def test_the_installed_wheel_carries_its_own_files(installed: Path, tmp_path: Path, folder: str, source: str) -> None:
     script = (
         f"from aolab import paths; folder = paths.{folder}(); print(folder, *sorted(folder.rglob('*.*')), sep='\\n')"
     )
     place, *files = map(Path, run(installed / "python", "-c", script, cwd=tmp_path).splitlines())
     assert place.is_relative_to(installed.parent.resolve())
-    here = {file.relative_to(CHECKOUT / folder) for file in (CHECKOUT / folder).rglob("*.*")}
+    here = {file.relative_to(CHECKOUT / source) for file in (CHECKOUT / source).rglob("*.*")}
     assert {file.relative_to(place) for file in files if "__pycache__" not in file.parts} == {
         file for file in here if "__pycache__" not in file.parts
     }

@@ -101,7 +101,10 @@ def with_shaders(module: Module, exercise: Exercise, texts: Texts) -> Module:
     def swapped(step: Any) -> Any:
         if isinstance(step, Estimate):
             return replace(step, passes=[*map(swapped, step.passes)], once=[*map(swapped, step.once)])
-        return replace(step, shader=files.get(str(step.shader), step.shader)) if isinstance(step, Pass) else step
+        if not isinstance(step, Pass):
+            return step
+        includes = {name: _text(files.get(file, file)) for name, file in step.includes.items()}
+        return replace(step, shader=files.get(str(step.shader), step.shader), includes=includes)
 
     def chosen(self: Module, axis: str) -> Choice:
         choice = kind.chosen(self, axis)
@@ -117,6 +120,10 @@ def with_shaders(module: Module, exercise: Exercise, texts: Texts) -> Module:
     }
     made = make(kind.__name__, (kind,), facts)
     return made(**{name: getattr(module, name) for name in kind.model_fields}, **(module.model_extra or {}))
+
+
+def _text(shader: str | Path) -> str:
+    return shader.read_text(encoding="utf-8") if isinstance(shader, Path) else shader
 
 
 def _filter_with_shaders(choice: Filter, swapped: Any) -> Filter:
