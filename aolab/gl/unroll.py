@@ -14,7 +14,7 @@ from ..errors import ShaderError
 MOST_COPIES = 32
 # A direction has a loop over its `steps`, which Mesa unrolls itself. ssao compiled in 0.6 s with 16 directions of 8
 # steps, and not within 100 s with 16 directions of 12 steps. As a loop, 16 of 16 took 0.1 s (llvmpipe, LLVM 15).
-INNER, MOST_TAPS = "steps", 128
+INNER, MOST_TAPS = "steps", 64
 VARIABLE = "AOLAB_UNROLL"  # of the environment: another limit; 0 halves the time of compiling
 
 _PRAGMA = re.compile(r"^\s*#\s*pragma\s+unroll\s*(?://.*)?$")
