@@ -77,6 +77,16 @@ def test_the_interleaved_pattern_cancels_on_a_plane(lab, filter, camera):
     assert frame["visibility_raw"][inside].std() > 0.25
 
 
+def test_box4_is_the_mean_of_a_window_that_ends_at_the_edge(lab):
+    """On a wall that faces the camera: rows and columns from -1 to 2, as far as the picture reaches."""
+    wall = small_scenes.of(small_scenes.quad((-9, -9, 0), (18, 0, 0), (0, 18, 0)), camera=Camera((0, 0, 4), (0, 0, 0)))
+    frame = lab.render(wall, Pattern(kind=1), size=(9, 7))
+    raw, filtered = frame["visibility_raw"][::-1], frame["visibility"][::-1]  # counted from the lowest row
+    for y, x in np.ndindex(raw.shape):
+        window = raw[max(y - 1, 0) : y + 3, max(x - 1, 0) : x + 3]
+        assert filtered[y, x] == pytest.approx(window.mean(), abs=2e-3)
+
+
 @pytest.mark.parametrize("filter", FILTERS)
 def test_filters_remove_the_noise_of_an_estimate(lab, wall, filter):
     settings = {"radius": 1.5, "directions": 4, "steps": 4, "thickness": 10.0}
