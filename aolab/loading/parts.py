@@ -172,10 +172,10 @@ def _mesh(part: Part, notes: Notes) -> tuple[Mesh, np.ndarray]:
 
 def _finite(vertices: np.ndarray, faces: np.ndarray, mesh: str, notes: Notes) -> np.ndarray:
     """The triangles whose vertices are finite; all of them if there are none, which `Mesh` refuses."""
-    finite = np.isfinite(vertices).all(axis=1)
+    finite = np.asarray(np.isfinite(vertices).all(axis=1))
     if finite.all():
         return faces
-    kept = finite[faces].all(axis=1)
+    kept = np.asarray(finite[faces].all(axis=1))
     if not kept.any():
         return faces
     lost = f"{len(kept) - kept.sum()} of {len(kept)} triangles of mesh '{mesh}', whose vertices are not finite"
