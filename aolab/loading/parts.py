@@ -144,6 +144,7 @@ def _mesh(part: Part, notes: Notes) -> tuple[Mesh, np.ndarray]:
             f"mesh '{name}': triangle {wrong} has indices {faces[wrong].tolist()}, "
             f"but there are {len(vertices)} vertices"
         )
+    faces = _finite(vertices, faces, name, notes)
     arrays = {
         "normals": part.normals,
         "uv": part.uv,
@@ -167,6 +168,19 @@ def _mesh(part: Part, notes: Notes) -> tuple[Mesh, np.ndarray]:
     normals, uv, colors, tangents, visibility = arrays.values()
     mesh = Mesh(vertices, faces, normals, uv, colors, part.material, name, tangents=tangents, visibility=visibility)
     return mesh, offset
+
+
+def _finite(vertices: np.ndarray, faces: np.ndarray, mesh: str, notes: Notes) -> np.ndarray:
+    """The triangles whose vertices are finite; all of them if there are none, which `Mesh` refuses."""
+    finite = np.asarray(np.isfinite(vertices).all(axis=1))
+    if finite.all():
+        return faces
+    kept = np.asarray(finite[faces].all(axis=1))
+    if not kept.any():
+        return faces
+    lost = f"{len(kept) - kept.sum()} of {len(kept)} triangles of mesh '{mesh}', whose vertices are not finite"
+    notes.add("left out: ", lost, separator="; ")
+    return faces[kept]
 
 
 def _usable(key: str, array: np.ndarray | None, count: int, mesh: str, notes: Notes) -> np.ndarray | None:

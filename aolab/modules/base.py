@@ -5,6 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeVar
 
+import numpy as np
 from pydantic import ConfigDict, Field, WrapValidator, model_serializer
 
 from ..errors import ParameterError
@@ -21,8 +22,6 @@ from .question import Question
 from .readable import Readable
 
 if TYPE_CHECKING:
-    import numpy as np
-
     from ..scene.prefiltered import Table
 
 # Common parameters: one meaning everywhere (see "The face of the package" in the design)
@@ -105,9 +104,10 @@ def auto_radius(scene: Scene) -> float:
     """A first value for the radius of occlusion, to two digits: the mean distance between two local maxima of the
     geometry (SSDO 2009, section 7.2), but at least 2 % and at most 10 % of the scene's radius.
 
-    Two digits, so that the small changes of an animated scene leave it as it is.
+    Two digits, so that the small changes of an animated scene leave it as it is. A few vertices far out do not count.
     """
-    low, high = (share * scene.radius for share in AUTO_RADIUS_SHARES)
+    size = float(np.linalg.norm(np.ptp(scene.main_bounds, axis=0))) / 2
+    low, high = (share * size for share in AUTO_RADIUS_SHARES)
     return float(f"{min(max(scene.feature_distance or high, low), high):.2g}")
 
 

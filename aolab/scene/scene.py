@@ -17,6 +17,7 @@ from .view import shader_origin
 
 SAMPLED = 1000  # vertices of an instance that decide what is framed
 OUTLYING = 1.0  # per cent of the vertices at either end of an axis that may be left out of the frame
+GAP = 1000.0  # times farther out than all the others: beside such vertices, the others would fit into a pixel
 FAR_OUT = 20.0  # times larger is a scene with them than without: a model on a wide floor is not meant
 MAX_EXTENT = 1e15  # scene units; its square still fits float32, which the shaders compute with
 
@@ -106,7 +107,7 @@ class Scene:
                 "its coordinates; scale it or move it to the origin"
             )
         if self.camera is None:
-            object.__setattr__(self, "camera", Camera.framing(self._bounds_to_frame()))
+            object.__setattr__(self, "camera", Camera.framing(self._framed()))
 
     def _checked_lights(self) -> tuple[Light, ...]:
         lights = tuple(self.lights) if isinstance(self.lights, Iterable) else None
@@ -128,26 +129,42 @@ class Scene:
         """(instances, 2, 3) float64: the bounds of each."""
         return np.array([instance.bounds for instance in self.instances])
 
-    def _bounds_to_frame(self) -> np.ndarray:
-        """The bounds, unless a few vertices lie far outside of all the others: then those of the others."""
+    @cached_property
+    def main_bounds(self) -> np.ndarray:
+        """(2, 3) float64: `bounds`, unless a few vertices lie far outside of all the others: then those of the others.
+
+        Few are `OUTLYING` per cent, or any minority that begins behind a wide `GAP`, as one vertex of a box may.
+        """
         sample = np.concatenate([
             instance.placed(instance.mesh.vertices[:: 1 + len(instance.mesh.vertices) // SAMPLED])
             for instance in self.instances
         ])  # fmt: skip
-        inner = np.percentile(sample, (OUTLYING, 100 - OUTLYING), axis=0)
+        away = np.linalg.norm(sample - np.median(sample, axis=0), axis=1)
+        rising = np.sort(away)
+        nearer, next_ones = rising[len(rising) // 2 : -1], rising[len(rising) // 2 + 1 :]
+        gaps = np.flatnonzero((nearer > 0) & (next_ones > GAP * nearer))
+        if len(gaps):
+            inside = sample[away <= nearer[gaps[0]]]
+            inner = np.array([inside.min(axis=0), inside.max(axis=0)])
+        else:
+            inner = np.percentile(sample, (OUTLYING, 100 - OUTLYING), axis=0)
         if not np.linalg.norm(np.ptp(self.bounds, axis=0)) > FAR_OUT * np.linalg.norm(np.ptp(inner, axis=0)):
             return self.bounds
         margin = 0.1 * np.ptp(inner, axis=0)  # of the extent: the outermost vertices are within
         inner = np.clip(inner + np.outer((-1, 1), margin), *self.bounds)
-        if not np.linalg.norm(np.ptp(inner, axis=0)) > 0:
-            return self.bounds
-        size = "{:.3g} × {:.3g} × {:.3g}"
-        warnings.warn(
-            f"scene '{self.name}': nearly all of its vertices lie within {size.format(*np.ptp(inner, axis=0))} of its "
-            f"{size.format(*np.ptp(self.bounds, axis=0))} units; the camera frames those",
-            Notice,
-            stacklevel=4,
-        )
+        return inner if np.linalg.norm(np.ptp(inner, axis=0)) > 0 else self.bounds
+
+    def _framed(self) -> np.ndarray:
+        """`main_bounds`, with a notice where they are not all."""
+        inner = self.main_bounds
+        if inner is not self.bounds:
+            size = "{:.3g} × {:.3g} × {:.3g}"
+            warnings.warn(
+                f"scene '{self.name}': most of its vertices lie within {size.format(*np.ptp(inner, axis=0))} of its "
+                f"{size.format(*np.ptp(self.bounds, axis=0))} units; the camera frames those",
+                Notice,
+                stacklevel=4,
+            )
         return inner
 
     @property

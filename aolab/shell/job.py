@@ -49,6 +49,11 @@ class Job:
         else:
             self.parameters = type(find(self.module, MODULES)).changed(self.parameters, settings)
 
+    def turn_up(self, axis: str | None) -> None:
+        """Let the `axis` of the scene's file point up; None leaves the scene as it is."""
+        if axis is not None:
+            self.scene = f"{self.scene}{'&' if '?' in str(self.scene) else '?'}up_axis={axis}"
+
     def move(self, eye: str | None, target: str | None, up: str | None, fov: float | None) -> None:
         """Override values of the camera; None leaves a value as it is."""
         places = {"eye": eye, "target": target, "up": up}

@@ -55,6 +55,10 @@ Accumulate = Annotated[
 Eye = Annotated[str | None, Option(metavar="X,Y,Z", help="Position of the camera. Default: the scene's.")]
 Target = Annotated[str | None, Option(metavar="X,Y,Z", help="Point at which the camera looks. Default: the scene's.")]
 Up = Annotated[str | None, Option(metavar="X,Y,Z", help="Direction that is upwards in the picture. Default: 0,1,0.")]
+UpAxis = Annotated[
+    str | None,
+    Option(metavar="y|z", help="The axis of a model file that points up, as in scans; also 'scan.ply?up_axis=z'."),
+]
 Fov = Annotated[float | None, Option(metavar="DEGREES", help="Vertical field of view. Default: the scene's.")]
 Exposure = Annotated[float | None, Option(metavar="FACTOR", help="Factor on radiance before the tone map. Default: 1.")]
 ToneMap = Annotated[

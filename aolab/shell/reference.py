@@ -17,6 +17,7 @@ def reference(
     eye: options.Eye = None,
     target: options.Target = None,
     up: options.Up = None,
+    up_axis: options.UpAxis = None,
     fov: options.Fov = None,
     like: options.Like = None,
     output: options.Output = Path("reference.png"),
@@ -35,6 +36,7 @@ def reference(
     from .text import settings
 
     job = asked(scene, like)
+    job.turn_up(up_axis)
     job.use(module, settings(set_))
     job.move(eye, target, up, fov)
     job.choose(size=size, seed=seed, buffer=buffer)

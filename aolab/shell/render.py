@@ -18,6 +18,7 @@ def render(
     eye: options.Eye = None,
     target: options.Target = None,
     up: options.Up = None,
+    up_axis: options.UpAxis = None,
     fov: options.Fov = None,
     exposure: options.Exposure = None,
     tone_map: options.ToneMap = None,
@@ -34,6 +35,7 @@ def render(
     from .text import settings
 
     job = asked(scene, like)
+    job.turn_up(up_axis)
     chosen = {} if occluders is None else {"occluders": occluders}
     job.use(module_name(module, shader, like_module), settings(set_) | chosen)
     job.move(eye, target, up, fov)

@@ -229,3 +229,10 @@ def test_statements_that_are_no_colours_are_told(tmp_path):
 def test_a_texture_with_an_absolute_path_is_left_out(tmp_path, name):
     with pytest.warns(Notice, match="its texture .*; drawn without"):
         assert painted(tmp_path, f"Kd 1 0 0\nmap_Kd {name}\n").texture is None
+
+
+def test_triangles_of_vertices_that_are_not_finite_are_left_out(tmp_path):
+    text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 3\nf 1 2 4\n"
+    with pytest.warns(aolab.Notice, match=r"left out: 1 of 2 triangles of mesh '.*', whose vertices are not finite"):
+        (mesh,) = meshes(write(tmp_path, text))
+    assert len(mesh.faces) == 1

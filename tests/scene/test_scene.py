@@ -5,6 +5,7 @@ import pytest
 import small_scenes
 
 from aolab import DirectionalLight, Environment, Instance, Mesh, Notice, Scene, SceneError
+from aolab.modules.base import auto_radius
 
 BOX = small_scenes.box((0, 0, 0), (1, 2, 3))
 
@@ -71,10 +72,21 @@ def test_an_empty_scene_is_refused_by_name():
 def test_a_few_vertices_far_out_do_not_decide_what_is_framed():
     dense = small_scenes.sphere(1.0, (0, 0, 0), subdivisions=3)
     sliver = Mesh(np.array([[0, 1, 0], [1e5, 2, 0], [0, 1.1, 0]]), [[0, 1, 2]])
-    with pytest.warns(Notice, match=r"nearly all of its vertices lie within .*× .* of its 1e\+05 × "):
+    with pytest.warns(Notice, match=r"most of its vertices lie within .*× .* of its 1e\+05 × "):
         scene = Scene((Instance(dense), Instance(sliver)))
     assert np.linalg.norm(scene.camera.eye) < 10
     assert scene.bounds[1, 0] == 1e5  # they are still there
+
+
+@pytest.mark.parametrize("away", [1e4, 1e6])
+def test_one_vertex_of_a_box_far_out_does_not_decide_what_is_framed(away):
+    """It is one of nine; and the radius of occlusion is that of the box."""
+    corners = np.array([(x, y, z) for x in (0, 1) for y in (0, 1) for z in (0, 1)] + [(away, 0.5, 0.2)])
+    faces = [(0, 1, 2), (1, 3, 2), (4, 6, 5), (5, 6, 7), (0, 4, 1), (1, 4, 5), (2, 3, 8)]
+    with pytest.warns(Notice, match=r"most of its vertices lie within"):
+        scene = Scene((Instance(Mesh(corners, faces)),))
+    assert np.linalg.norm(scene.camera.eye) < 10
+    assert auto_radius(scene) < 1
 
 
 def test_a_model_on_a_wide_floor_is_framed_with_its_floor():

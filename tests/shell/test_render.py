@@ -240,6 +240,18 @@ def test_a_buffer_of_the_reference_that_is_not_traced_by_default(aolab):
 # --- the camera and the metadata
 
 
+def test_the_axis_of_a_file_that_points_up(aolab):
+    """The same as the parameter behind its name; and --like repeats it."""
+    aolab("render", "knot.glb", *SMALL, "--up-axis", "z", "-o", "a.png")
+    aolab("render", "knot.glb?up_axis=z", *SMALL, "-o", "b.png")
+    aolab("render", "--like", "a.png", "-o", "c.png")
+    aolab("render", "knot.glb", *SMALL, "-o", "d.png")
+    a, b, c, d = (pixels(f"{name}.png") for name in "abcd")
+    assert np.array_equal(a, b)
+    assert np.array_equal(a, c)
+    assert not np.array_equal(a, d)
+
+
 def test_up_turns_the_camera(aolab):
     aolab("render", "boxes", *SMALL, "--up", "0,1,0", "-o", "a.png")
     aolab("render", "boxes", *SMALL, "--up", "0,-1,0", "-o", "b.png")
@@ -312,6 +324,8 @@ REFUSED = {
     "size of zero": (("boxes", "--size", "0x10"), r"size = 0x10: each side must be from 1 to \d+ pixels"),
     "size beyond the limit": (("boxes", "--size", "99999x1"), r"size = 99999x1: each side must be from 1 to \d+"),
     "negative seed": (("boxes", *SMALL, "--seed", "-1"), r"seed = -1 is not a whole number from 0 on"),
+    "an axis that is none": (("knot.glb", "--up-axis", "x"), r"up_axis = 'x' is not valid"),
+    "an axis of a scene of code": (("boxes", "--up-axis", "z"), r"scene 'boxes' has no parameter 'up_axis'"),
     "accumulate for ever": (("boxes", *SMALL, "--accumulate", "9" * 30), r"accumulate = 9+ is not a whole number from"),
     "a number of 5000 digits": (("boxes", *SMALL, "--set", f"radius={'9' * 5000}"), r"radius = '9+\.\.\.9+' is not"),
     "accumulate nothing": (
