@@ -32,7 +32,7 @@ def in_turns(draws: Mapping[Key, Callable[[], Frame]], repeats: int) -> dict[Key
     costs: dict[Key, list[Cost]] = {name: [] for name in draws}
     for turn in range(repeats + 1):
         for name, draw in draws.items():
-            frame = draw().complete()
+            frame = draw().complete("image")
             if turn:
                 costs[name].append(Cost(frame.frame_ms, frame.timings))
     return costs
