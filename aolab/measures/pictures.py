@@ -76,6 +76,9 @@ def draw(
         panels = (*_seen(line.comparison), _colored(line.comparison.error, mappable))
         for column, (head, pixels) in enumerate(zip(heads, panels, strict=True)):
             x = MARGIN + column * (panel[0] + MARGIN)
+            if column == 1 and index and _same_truth(line, lines[index - 1]):
+                write(x, y, "the same truth as above", fontsize=9, color="0.5")
+                continue
             write(x, y - 17, head, fontsize=9)
             axes = figure.add_axes(box(x, y, *panel), xticks=[], yticks=[])
             axes.spines[:].set(color="0.75", linewidth=0.6)
@@ -85,6 +88,10 @@ def draw(
     _bar(figure, mappable, largest, bar, one)
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _same_truth(line: Line, above: Line) -> bool:
+    return np.array_equal(line.comparison.reference, above.comparison.reference, equal_nan=True)
 
 
 def _scale(comparisons: Sequence[BufferComparison], limit: float | None) -> tuple[ScalarMappable, float]:

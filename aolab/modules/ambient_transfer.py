@@ -45,6 +45,7 @@ class AmbientTransfer(Module):
     """
 
     name = "ambient_transfer"
+    claims = "ambient"
     title = "Ambient transfer"
     paper = "Umenhoffer, Tóth and Szirmay-Kalos 2009, Efficient Methods for Ambient Lighting"
     shader = "ambient_transfer.frag"

@@ -164,6 +164,7 @@ class Module(Parameters):
     derived: ClassVar[Mapping[str, "Callable[[Readable, str], np.ndarray]"]] = {}
     buffers: ClassVar[Sequence[Buffer]] = ()
     lit: ClassVar[bool] = False
+    claims: ClassVar[str] = "visibility"  # the buffer by which the method differs from others: `aolab compare` takes it
     parts: ClassVar[Sequence[str]] = ()  # of other modules: see `combined.py`
     choices: ClassVar[Mapping[str, Mapping[str, type[Choice]]]] = {"occluders": OCCLUDERS, "filter": FILTERS}
 

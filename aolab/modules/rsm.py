@@ -100,6 +100,7 @@ class RSM(with_rsm(Unoccluded)):  # pyright: ignore[reportGeneralTypeIssues, rep
     """
 
     name = "rsm"
+    claims = "indirect"
     title = "Reflective shadow maps"
     paper = PAPER
 

@@ -65,6 +65,7 @@ class S3HO(Marched):
     """
 
     name = "s3ho"
+    claims = "ambient"
     title = "Screen-space spherical harmonic occlusion"
     paper = "Herholz, Schairer, Schilling and Straßer 2012, Screen Space Spherical Harmonic Occlusion"
     shader = "s3ho.moments.frag"

@@ -46,6 +46,7 @@ class SSBN(Marched):
     """
 
     name = "ssbn"
+    claims = "ambient"
     title = "Screen-space bent normals and cones"
     paper = "Klehm, Ritschel, Eisemann and Seidel 2011, Bent Normals and Cones in Screen-space"
     shader = "ssbn.frag"

@@ -23,6 +23,7 @@ class SSDO(Marched):
     """
 
     name = "ssdo"
+    claims = "ambient"
     title = "Screen-space directional occlusion"
     paper = "Ritschel, Grosch and Seidel 2009, Approximating Dynamic Global Illumination in Image Space"
     shader = "ssdo.frag"

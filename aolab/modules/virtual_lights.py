@@ -128,6 +128,7 @@ class EnvironmentVPL(with_environment_vpl(Unoccluded)):  # pyright: ignore[repor
     """
 
     name = "environment_vpl"
+    claims = "ambient"
     title = "Virtual point lights of the environment"
     paper = f"{SSDO_PAPER}, section 5; {DEBEVEC}"
 
@@ -140,6 +141,7 @@ class InstantRadiosity(with_instant_radiosity(SSAO)):  # pyright: ignore[reportG
     """
 
     name = "instant_radiosity"
+    claims = "indirect"
     title = "Instant radiosity"
     paper = f"{KELLER}; {SSDO_PAPER}, section 5"
 

@@ -21,7 +21,7 @@ def bench(
     frames: Annotated[int, Option(metavar="N", min=3, help="Frames for each measurement.")] = 15,
     scaling: Annotated[
         bool,
-        Option("--scaling", help="Measure how the time grows with pixels, taps, triangles, lights, ..."),
+        Option("--scaling", help="Measure how the time grows with pixels, taps, triangles, lights."),
     ] = False,
     start: Annotated[
         bool, Option("--start", help="Measure the import, and the time from process start to a saved picture.")

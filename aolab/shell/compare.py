@@ -24,7 +24,9 @@ def compare(
     size: options.PixelSize = "480x270",
     rays: options.Rays = 256,
     radius: options.Radius = None,
-    buffer: Annotated[str, Option(metavar="NAME", help="The buffer that is compared.")] = "visibility",
+    buffer: Annotated[
+        str | None, Option(metavar="NAME", help="The buffer that is compared. Default: by the modules' claims.")
+    ] = None,
     output: Annotated[
         Path | None, Option("-o", "--output", metavar="FILE.png", help="Write a sheet of pictures, a row a module.")
     ] = None,
@@ -46,7 +48,7 @@ def compare(
 
     chosen = [find(name, MODULES) for name in text.listed(modules) or MODULES]
     if relight is not None:
-        if output is not None or buffer != "visibility":
+        if output is not None or buffer is not None:
             raise ParameterError("--relight prints errors of ambient light: it takes no -o and no --buffer")
         found = _relit(scene, chosen, text.size(size), rays, radius, relight)
         print(_relit_json(found) if as_json else _relit_table(found, relight))
@@ -61,7 +63,7 @@ def _compared(
     size: tuple[int, int],
     rays: int,
     radius: float | None,
-    buffer: str,
+    buffer: str | None,
     output: Path | None,
     flip: bool,
 ) -> "Ranking":

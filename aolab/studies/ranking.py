@@ -5,6 +5,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from PIL import Image
 
 from ..errors import ParameterError
@@ -69,13 +70,30 @@ class Ranking(list[Entry]):
     def _rows(self) -> list[list[Any]]:
         return [[one.label, *(getattr(_only(one), name) for name in MEASURES), one.milliseconds] for one in self]
 
+    def _equal(self) -> list[str]:
+        """A line for each group of modules with the same result in all pixels."""
+        groups: list[list[Entry]] = []
+        for one in self:
+            result = _only(one).result
+            alike = (some for some in groups if np.array_equal(_only(some[0]).result, result, equal_nan=True))
+            group = next(alike, None)
+            groups.append([one]) if group is None else group.append(one)
+        return [
+            f"the same {_only(group[0]).name}, pixel by pixel: {', '.join(one.label for one in group)}"
+            for group in groups
+            if len(group) > 1
+        ]
+
     def __repr__(self) -> str:
-        return table({"": "", **dict.fromkeys(MEASURES, ".4f"), "frame ms": ".1f"}, self._rows())
+        head = _only(self[0]).name if self else ""
+        lines = table({head: "", **dict.fromkeys(MEASURES, ".4f"), "frame ms": ".1f"}, self._rows())
+        return "\n".join([lines, *self._equal()])
 
     def _repr_html_(self) -> str:
         rows = [[row[0], *(f"{number:.4f}" for number in row[1:-1]), f"{row[-1]:.1f}"] for row in self._rows()]
         picture = html.img(sheet(self), "A row for each module: result, truth, error and numbers") if self else ""
-        return html.table(("module", *MEASURES, "frame ms"), rows) + picture
+        lines = "".join(f"<p>{line}</p>" for line in self._equal())
+        return html.table(("module", *MEASURES, "frame ms"), rows) + lines + picture
 
 
 def compare_modules(
@@ -86,13 +104,15 @@ def compare_modules(
     camera: Camera | None = None,
     rays: int = 256,
     radius: float | None = None,
-    buffer: str = "visibility",
+    buffer: str | None = None,
     seed: int = 0,
     accumulate: int = 1,
     flip: bool = True,
 ) -> Ranking:
     """Render `scene` with each of `modules` (default: all), compare `buffer` with the truth, and sort by RMSE.
 
+    Without a `buffer`, it is the one that all the modules claim (`Module.claims`), and `ambient` if their claims
+    differ: in `visibility`, methods for coloured light do not differ from SSAO.
     The least error comes first. A module is compared with a reference of its own radius and falloff, a module without a
     radius with the reference of the first module that has one. `radius` (scene units) replaces all radii. `flip=False`
     leaves out the slowest measure.
@@ -104,6 +124,8 @@ def compare_modules(
     scene = load(scene)
     view: dict[str, Any] = {"size": size, "camera": camera, "seed": seed}
     pairs = with_their_truth(scene, modules or MODULES, radius)
+    claimed = {module.claims for module, _ in pairs}
+    buffer = buffer or (claimed.pop() if len(claimed) == 1 else "ambient")
     for module, _ in pairs:
         frame = shared_lab().render(scene, module, **view)
         if buffer not in frame.buffers:

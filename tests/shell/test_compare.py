@@ -13,7 +13,7 @@ def test_a_line_for_each_module_and_a_sheet(aolab):
     done = aolab(*SMALL, "--modules", "none, ssao?steps=3", "-o", "sheet.png")
     assert done.code == 0, done.err
     head, *lines = done.out.splitlines()
-    assert head.split() == ["rmse", "bias", "p99", "ssim", "flip", "frame", "ms"]
+    assert head.split() == ["visibility", "rmse", "bias", "p99", "ssim", "flip", "frame", "ms"]
     assert [line.split()[:2] for line in lines] == [["ssao", "steps=3"], ["none", lines[1].split()[1]]]
     assert Path("sheet.png").read_bytes().startswith(b"\x89PNG")
 

@@ -29,7 +29,7 @@ def test_the_best_comes_first(entries):
 
 def test_the_ranking_shows_itself(entries):
     lines = repr(entries).splitlines()
-    assert lines[0].split() == ["rmse", "bias", "p99", "ssim", "flip", "frame", "ms"]
+    assert lines[0].split() == ["visibility", "rmse", "bias", "p99", "ssim", "flip", "frame", "ms"]
     assert [line.split("  ")[0] for line in lines[1:]] == [entry.label for entry in entries]
     assert f"{entries[0].comparison['visibility'].rmse:.4f}" in lines[1]
     html = entries._repr_html_()
@@ -37,6 +37,21 @@ def test_the_ranking_shows_itself(entries):
     assert html.count("<img") == 1
     assert repr(entries[-1]).startswith("<Entry none: visibility rmse 0.")
     assert "truth | result" in entries[0]._repr_html_()
+
+
+def test_methods_for_coloured_light_are_compared_by_ambient_light(boxes):
+    """And modules with the same result are named in a line of their own."""
+    sky = boxes.replace(environment=aolab.Environment.sky(sun_direction=(1.0, 0.6, 0.2)))
+    found = compare_modules(sky, ["ssao", "ssdo", "rsm"], radius=0.4, **SMALL)
+    assert [next(iter(one.comparison.buffers)) for one in found] == ["ambient"] * 3
+    assert repr(found).splitlines()[0].split()[0] == "ambient"
+    same = [line for line in repr(found).splitlines() if line.startswith("the same")]
+    assert same == []  # rsm has no occlusion
+    twice = compare_modules(sky, ["none", "rsm"], **SMALL)
+    assert repr(twice).splitlines()[-1] == "the same ambient, pixel by pixel: none, rsm"
+    assert "the same ambient" in twice._repr_html_()
+    only = compare_modules(sky, ["ssao", "none"], radius=0.4, **SMALL)
+    assert next(iter(only[0].comparison.buffers)) == "visibility"
 
 
 def test_labels_name_what_was_changed(entries):
