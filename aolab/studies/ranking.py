@@ -133,7 +133,7 @@ def compare_modules(
     entries = []
     with progress_bar("modules", len(pairs)) as bar:
         for module, like in pairs:
-            reach = {"like": like} if like else {"radius": radius}
+            reach = {"like": like} if like else {"radius": None if module.claims == "ambient" else radius}
             truth = reference(scene, **view, rays=rays, buffers=(buffer,), **reach)  # type: ignore[arg-type]
             frame = shared_lab().render(scene, module, **view, accumulate=accumulate)
             comparison = compare(frame, truth, buffer, flip=flip)
@@ -167,12 +167,17 @@ def sheet(entries: Sequence[Entry], *, limit: float | None = None) -> Image.Imag
 def with_their_truth(scene: Scene, modules: Modules, radius: float | None = None) -> list[tuple[Module, Module | None]]:
     """Pairs of a module, resolved and with `radius` if given, and of the module whose reference it is compared with.
 
-    The second is the first itself, or, if it has no radius, the first module of all that has; None if none has.
+    The second is the first itself, or, if it has no radius, the first module of all that has; None if none has. It is
+    None, too, for a method without a radius that claims ambient light: shadow maps reach to the end of the scene.
     """
     modules = [modules] if isinstance(modules, (str, Module, type)) else modules
     chosen = [_with_radius(find(one, MODULES), radius).resolved(scene) for one in modules]
     first = next((module for module in chosen if module.occlusion_radius is not None), None)
-    return [(module, module if module.occlusion_radius is not None else first) for module in chosen]
+    return [(module, module if module.occlusion_radius is not None else _other(module, first)) for module in chosen]
+
+
+def _other(module: Module, first: Module | None) -> Module | None:
+    return None if module.claims == "ambient" else first
 
 
 def _with_radius(module: Module, radius: float | None) -> Module:

@@ -108,3 +108,13 @@ def test_a_comparison_without_its_buffer_or_library_is_refused_before_rays_are_t
     monkeypatch.setitem(sys.modules, "flip_evaluator", None)
     with pytest.raises(aolab.ParameterError, match=r"pip install flip-evaluator, or flip=False \(--no-flip"):
         compare_modules(boxes, ["ssao"], **{**SMALL, "flip": True})
+
+
+def test_shadow_maps_of_an_environment_are_judged_by_unlimited_rays(boxes):
+    """Also beside modules with a radius."""
+    together = {
+        one.module.name: one for one in compare_modules(boxes, ["ssao", "environment_vpl"], radius=0.05, **SMALL)
+    }
+    alone = compare_modules(boxes, ["environment_vpl"], **SMALL)[0].comparison["ambient"]
+    assert together["environment_vpl"].comparison["ambient"].rmse == pytest.approx(alone.rmse)
+    assert together["ssao"].comparison["ambient"].rmse < 0.05
