@@ -14,6 +14,7 @@ from ...gl.texture import Size
 from ...loading import load
 from ...measures.metrics import differences
 from ...modules import S3HO, SSAO, Module
+from ...modules.none import Unoccluded
 from ...modules.parameters import label
 from ...pipeline.frame import Frame
 from ...pipeline.lab import Lab
@@ -34,6 +35,7 @@ from .vtk_ssao import VtkSSAO
 
 PEERS: dict[str, PeerClass] = {"pyvista": VtkSSAO, "open3d": Open3dSAO}
 # aolab's own settings: the defaults of two modules, and those between which the others' choices lie
+BARE = Unoccluded(filter="none")  # a frame without occlusion
 OURS = (SSAO(), SSAO(directions=16, steps=4), SSAO(scale=0.5), S3HO())
 
 
@@ -179,6 +181,6 @@ class _Ours:
     def milliseconds(self, occlusion: bool) -> float:
         """The time of a frame, with or without ambient occlusion."""
         start = perf_counter()
-        self._lab.render(self._scene, self._module if occlusion else "none").complete("image")
+        self._lab.render(self._scene, self._module if occlusion else BARE).complete("image")
         context.get().finish()
         return (perf_counter() - start) * 1e3
