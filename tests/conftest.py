@@ -35,6 +35,7 @@ PAPERS = CHECKOUT / "tests" / "papers"
 LONG = (
     "test_readme", "test_bake", "test_interrupts", "test_notebooks", "test_claims", "test_reproduce", "test_sweep",
     "test_quality", "test_wheel", "test_jupyterlab", "test_otter", "test_grade", "test_measuring",
+    "test_exercises",
 )  # fmt: skip
 
 

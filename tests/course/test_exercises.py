@@ -45,6 +45,7 @@ def test_a_step_by_itself_has_its_points(gl, tmp_path, name):
     assert result[last.name].passed
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "step", "mistake"), MISTAKES)
 def test_a_known_mistake_fails_and_is_named(gl, tmp_path, name, step, mistake):
     one = course.exercise(name)
