@@ -57,10 +57,13 @@ def test_a_right_folder_has_all_points_whatever_the_others_do(graded):
 
 
 @pytest.mark.slow
-def test_an_endless_loop_is_ended_at_the_time_limit(graded):
-    assert graded["endless"].result.score == 0
-    assert "stopped after 30 s: a loop may never end" in graded["endless"].result.error
-    assert graded["endless"].seconds < 60
+def test_an_endless_loop_is_ended_at_the_time_limit(folders, graded):
+    """llvmpipe leaves a loop after 65,535 steps; another driver does not, and then the time limit ends the process."""
+    assert graded["endless"].result.score < course.exercise("hemisphere").points
+    (ended,) = course.grade([folders["endless"]], limit=1)  # less than the package takes to start and draw
+    assert ended.result.score == 0
+    assert "stopped after 1 s: a loop may never end" in ended.result.error
+    assert ended.seconds < 30
 
 
 @pytest.mark.slow

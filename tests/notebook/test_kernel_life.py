@@ -83,7 +83,7 @@ def test_a_restarted_kernel_renders_the_same(kernel, picture):
 @pytest.mark.parametrize(
     "long_work",
     [
-        'lab.render("boxes", "ssao", accumulate=100_000)',
+        'lab.render("boxes", "ssao", size=(640, 360), accumulate=16_000)',
         'lab.render("boxes", "ssao", size=(1280, 720), directions=64, steps=16)',
         'aolab.reference("boxes", size=(640, 360), rays=100_000, cache=False)',
         'aolab.sweep("boxes", "ssao", size=(64, 36), seed=range(100_000), reference=False)',
