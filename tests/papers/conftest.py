@@ -32,7 +32,9 @@ EDITS = {
     "senders of twice the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 2.0 * PI"),),
     "senders of half the area": (("lib/senders.glsl", "return bleeding * PI", "return bleeding * 0.5 * PI"),),
     "back-facing senders": (("lib/senders.glsl", "facing > 0.0 && dot(", "dot("),),
-    "grey senders": (("occluders/depth.glsl", SENDER, f"vec3(dot({SENDER}, vec3(1.0 / 3.0)))"),),
+    "grey senders": tuple(
+        (f"occluders/{kind}.glsl", SENDER, f"vec3(dot({SENDER}, vec3(1.0 / 3.0)))") for kind in ("depth", "height")
+    ),
     "coefficients of three senders": (("s3ho.senders.frag", "= shClampedCosine(", "= 3.0 * shClampedCosine("),),
     # the environment
     "one direction for all": (("ssdo.frag", "octahedralUv(worldFrame * kernel[i].xyz)", "vec2(0.5)"),),
