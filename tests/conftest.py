@@ -76,6 +76,19 @@ def gl() -> moderngl.Context:
     return context.get()
 
 
+@pytest.fixture(scope="module")  # it has an event loop of its own, which must not outlive the tests of a file
+def chromium() -> Iterator:
+    """A headless Chromium of Playwright; without one, the test is skipped."""
+    playwright = pytest.importorskip("playwright.sync_api")
+    path = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+    if path is None:
+        pytest.skip("no Chromium on this machine")
+    with playwright.sync_playwright() as started:
+        browser = started.chromium.launch(executable_path=path, args=["--no-sandbox", "--disable-gpu"])
+        yield browser
+        browser.close()
+
+
 @pytest.fixture(scope="session")
 def lab(gl: moderngl.Context) -> aolab.Lab:
     """One lab for all tests, so that each shader is compiled once."""

@@ -69,13 +69,18 @@ def curve(
                 )  # also compiles the shaders
                 variants.append((one, varied, one == module, error))
                 bar.update()
-            noise = max(noise, float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2))))
+            noise = max(noise, noise_of(truth))
 
     times = _times(lab, scene, [variant[0] for variant in variants], frames, shared)
     points = [
         _point(label(type(module)), varied, default, error, passes)
         for (module, varied, default, error), passes in zip(variants, times, strict=True)
     ]
+    return curve_of(points, noise, scene, size=size, radius=judge.radius, rays=rays, seed=seed, frames=frames)
+
+
+def curve_of(points: Sequence[Point], noise: float, scene: Scene, *, size: Size, **conditions: Any) -> Curve:
+    """The curve of measured points, with its front; `conditions`: the radius, the rays, the seed and the frames."""
     front = pareto_front([(point.milliseconds, point.rmse) for point in points])
     info = {
         "aolab": __version__,
@@ -83,12 +88,14 @@ def curve(
         "machine": machine.describe(),
         "scene": scene.source or scene.name,
         "size": list(size),
-        "radius": judge.radius,
-        "rays": rays,
-        "seed": seed,
-        "frames": frames,
+        **conditions,
     }
     return Curve(tuple(replace(point, front=i in front) for i, point in enumerate(points)), info, noise)
+
+
+def noise_of(truth: Frame) -> float:
+    """The RMS of the standard error of the truth's visibility, over the pixels with a surface."""
+    return float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2)))
 
 
 def settings(module: Module) -> list[tuple[Module, dict[str, Any]]]:

@@ -3,7 +3,6 @@
 import json
 import os
 import re
-import shutil
 import socket
 import subprocess
 import sys
@@ -61,23 +60,16 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 
 
 @pytest.fixture(scope="module")
-def page(server: str) -> Iterator:
+def page(chromium, server: str):
     """The notebook's page, with its cell run."""
-    playwright = pytest.importorskip("playwright.sync_api")
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if chromium is None:
-        pytest.skip("no Chromium on this machine")
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        page = browser.new_page(viewport={"width": 1300, "height": 900})
-        page.set_default_timeout(PATIENCE)
-        page.goto(f"{server}/lab/tree/explore.ipynb")
-        page.locator(".jp-Notebook .cm-content").first.click()
-        page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(state="attached")
-        page.keyboard.press("Shift+Enter")
-        page.get_by_label("Render. Arrow keys").wait_for()
-        yield page
-        browser.close()
+    page = chromium.new_page(viewport={"width": 1300, "height": 900})
+    page.set_default_timeout(PATIENCE)
+    page.goto(f"{server}/lab/tree/explore.ipynb")
+    page.locator(".jp-Notebook .cm-content").first.click()
+    page.locator(".jp-Notebook-ExecutionIndicator[data-status=idle]").wait_for(state="attached")
+    page.keyboard.press("Shift+Enter")
+    page.get_by_label("Render. Arrow keys").wait_for()
+    return page
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 
 import base64
 import re
-import shutil
 from io import BytesIO
 
 import numpy as np
@@ -41,18 +40,11 @@ def test_no_pictures_and_a_first_picture_beyond_the_last_are_refused():
 
 
 @pytest.mark.browser
-def test_the_slider_turns_the_pages():
-    playwright = pytest.importorskip("playwright.sync_api")
-    chromium = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-    if chromium is None:
-        pytest.skip("no Chromium on this machine")
-    with playwright.sync_playwright() as started:
-        browser = started.chromium.launch(executable_path=chromium, args=["--no-sandbox", "--disable-gpu"])
-        page = browser.new_page()
-        page.set_default_timeout(60_000)
-        page.set_content(book()._repr_html_() + book(first=2)._repr_html_())
-        sliders = page.get_by_role("slider")
-        sliders.first.press("ArrowRight")
-        visible = [img.get_attribute("alt") for img in page.locator("img").all() if img.is_visible()]
-        assert visible == ["green", "blue <b>"]  # the second book stays as it is
-        browser.close()
+def test_the_slider_turns_the_pages(chromium):
+    page = chromium.new_page()
+    page.set_default_timeout(60_000)
+    page.set_content(book()._repr_html_() + book(first=2)._repr_html_())
+    sliders = page.get_by_role("slider")
+    sliders.first.press("ArrowRight")
+    visible = [img.get_attribute("alt") for img in page.locator("img").all() if img.is_visible()]
+    assert visible == ["green", "blue <b>"]  # the second book stays as it is

@@ -2,11 +2,9 @@
 
 import statistics
 import warnings
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
-
-import numpy as np
 
 from ...errors import Notice, ParameterError
 from ...gl import context
@@ -23,11 +21,9 @@ from ...scene.camera import Camera
 from ...scene.scene import Scene
 from ...table import table
 from ...truth import reference
-from ...version import __version__
-from .. import machine
 from ..bench import summary
 from ..curve import Curve, Point
-from ..quality import pareto_front
+from ..quality import curve_of, noise_of, visibility_error
 from .open3d_sao import Open3dSAO
 from .peer import PeerClass
 from .process import PeerProcess
@@ -122,20 +118,7 @@ def race(
                 runner.error["bias"],
             )
         )
-    front = pareto_front([(point.milliseconds, point.rmse) for point in points])
-    info = {
-        "aolab": __version__,
-        "renderer": context.renderer(),
-        "machine": machine.describe(),
-        "scene": scene.source or scene.name,
-        "size": list(size),
-        "radius": chosen,
-        "rays": rays,
-        "seed": seed,
-        "frames": frames,
-    }
-    noise = float(np.sqrt(np.mean(truth["standard_error"][truth.mask] ** 2)))
-    curve = Curve(tuple(replace(point, front=i in front) for i, point in enumerate(points)), info, noise)
+    curve = curve_of(points, noise_of(truth), scene, size=size, radius=chosen, rays=rays, seed=seed, frames=frames)
     whole = {
         point.label: summary([pair[0] for pair in known]) for point, known in zip(curve.points, times, strict=True)
     }
@@ -176,7 +159,7 @@ class _Ours:
         asked = ("directions", "steps", "scale")
         self.settings: dict[str, object] = {name: getattr(module, name) for name in asked}
         self.default = all(getattr(module, name) == type(module).model_fields[name].default for name in asked)
-        self.error = differences((lab.render(scene, module)["visibility"] - truth["visibility"])[truth.mask])
+        self.error = visibility_error(lab.render(scene, module), truth)
 
     def milliseconds(self, occlusion: bool) -> float:
         """The time of a frame, with or without ambient occlusion."""
