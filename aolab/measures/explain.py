@@ -136,7 +136,7 @@ def explain(
     layered = marched.replace(occluders="layers", layers=LAYERS) if module.occluders == "depth" else marched
     fine = layered
     if module.occluders == "voxels":
-        fine = layered.replace(voxels=min(2 * layered.model_dump()["voxels"], FINEST))
+        fine = layered.replace(voxels=min(2 * layered.values()["voxels"], FINEST))
     converged = {"seed": seed, "accumulate": frames, "camera": camera}
 
     frame = lab.render(scene, module, camera=camera, seed=seed)

@@ -109,7 +109,7 @@ class AmbientTransfer(Module):
         return True
 
     def question(self) -> Question:
-        values = self.model_dump()
+        values = self.values()
         measure = self.chosen("measure")
         assert isinstance(measure, Measure)
         sigma = {"sigma": values["sigma"]} if "sigma" in values else {}

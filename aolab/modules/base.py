@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, TypeVar
 
 import numpy as np
-from pydantic import ConfigDict, Field, WrapValidator, model_serializer
+from pydantic import ConfigDict, Field, WrapValidator
 
 from ..errors import ParameterError
 from ..gl.source import beside
@@ -220,7 +220,7 @@ class Module(Parameters):
             if isinstance(chosen, Choice):
                 chosen = chosen.replace(**{name: others.pop(name) for name in [*others] if name in chosen.stated()})
                 builtin = type(chosen) is table.get(chosen.name)
-                own |= {axis: chosen.name, **chosen.model_dump()} if builtin else {axis: chosen}
+                own |= {axis: chosen.name, **chosen.values()} if builtin else {axis: chosen}
         for name, value in others.items():
             if name not in cls.stated():
                 raise ParameterError(unknown(cls, name))
@@ -233,13 +233,12 @@ class Module(Parameters):
             )
         return own
 
-    @model_serializer
-    def _flat(self) -> dict[str, Any]:
-        """All values by name, plain, those of the chosen kinds among them."""
-        values: dict[str, Any] = {name: getattr(self, name) for name in type(self).model_fields}
+    def values(self) -> dict[str, Any]:
+        """{name: value} of all parameters, those of the chosen kinds among them."""
+        values = super().values()
         for axis in self.choices:
             chosen = self.chosen(axis)
-            values |= {axis: chosen.name, **chosen.model_dump()}
+            values |= {axis: chosen.name, **chosen.values()}
         return values
 
     @classmethod
@@ -349,7 +348,7 @@ class Module(Parameters):
 
     def question(self) -> Question:
         """The quantity that a `resolved` module approximates: `aolab.reference(scene, like=module)` computes it."""
-        values = self.model_dump()
+        values = self.values()
         return Question(values.get("radius"), values.get("falloff", 0.0), limited_senders=True, normals=self.normals)
 
     def resolved(self, scene: Scene) -> Self:
@@ -364,7 +363,7 @@ Bouncing = TypeVar("Bouncing", bound=Module)
 
 def with_distance_clamp(module: Bouncing) -> Bouncing:
     """The resolved module with an `auto` distance clamp made the radius of a patch: π d² = π radius² / N."""
-    values = module.model_dump()
+    values = module.values()
     if values["distance_clamp"] != AUTO:
         return module
     return module.replace(distance_clamp=values["radius"] / values["directions"] ** 0.5)

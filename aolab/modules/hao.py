@@ -43,7 +43,7 @@ class HAO(Module):
 
     def passes(self) -> list[Pass]:
         constants = {"lifted": self.occluders != "voxels"}
-        if self.occluders != "voxels" or self.model_dump()["voxel_region"] == WHOLE:
+        if self.occluders != "voxels" or self.values()["voxel_region"] == WHOLE:
             return [Pass("hao", self.shader, self.outputs, constants)]
         inside = Pass("hao", self.shader, {"inside": "R16F"}, constants, writes={"visibility": "inside"})
         return [

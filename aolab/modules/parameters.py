@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin
 
-from pydantic import BaseModel, ConfigDict, Field, PydanticUserError, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, PydanticUserError, ValidationError, model_serializer
 
 from ..errors import ParameterError, suggestion
 from ..gl.source import Constant
@@ -93,6 +93,18 @@ class Parameters(BaseModel, metaclass=_Declared):
         """{parameter: the class that states it}, in the order of their statements."""
         return dict.fromkeys(cls.model_fields, cls)
 
+    def values(self) -> dict[str, Any]:
+        """{name: value} of all parameters.
+
+        The package calls `values`, not `model_dump`: pydantic turns a KeyboardInterrupt in a serializer into a
+        `ValueError`, and Ctrl-C is lost.
+        """
+        return {name: getattr(self, name) for name in type(self).model_fields}
+
+    @model_serializer
+    def _serialized(self) -> dict[str, Any]:
+        return self.values()
+
     def numbers(self) -> dict[str, Constant]:
         """The values that a shader may take, as uniforms or as constants: words never reach a shader."""
         own = {name: getattr(self, name) for name in type(self).model_fields}
@@ -104,7 +116,7 @@ class Parameters(BaseModel, metaclass=_Declared):
 
     def _repr_html_(self) -> str:
         """A table of the parameters, in the order of `own_first`."""
-        cls, values, rows = type(self), self.model_dump(), []
+        cls, values, rows = type(self), self.values(), []
         for about in (describe(cls, name) for name in own_first(cls)):
             within = ", ".join(part for part in (about["type"], about["range"], about["with"]) if part)
             rows.append((about["name"], values.get(about["name"], "-"), within, about["unit"], about["description"]))

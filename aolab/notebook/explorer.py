@@ -61,7 +61,7 @@ class Explorer(anywidget.AnyWidget):
         rays: int,
     ) -> None:
         name = module.name or type(module).__name__
-        start = {key: value for key, value in module.model_dump().items() if key in module.model_fields_set}
+        start = {key: value for key, value in module.values().items() if key in module.model_fields_set}
         super().__init__(
             statement={known: controls(one, scene) for known, one in modules.items()},
             wish={"number": 0, "module": name, "parameters": start},
@@ -189,7 +189,7 @@ class Explorer(anywidget.AnyWidget):
         if self._accumulate > 1:
             parts.append(f"accumulate={self._accumulate}")
         stated = type(self.module).stated()
-        values = self.module.model_dump().items()
+        values = self.module.values().items()
         parts += [f"{key}={value!r}" for key, value in values if value != stated[key].model_fields[key].default]
         return f"aolab.render({', '.join(parts)})"
 

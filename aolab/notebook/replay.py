@@ -100,7 +100,7 @@ def replay(seen: Surfaces, pixel: tuple[int, int], seed: int) -> Samples | None:
     centre = np.array([F(x) + F(0.5), F(y) + F(0.5)], F)
     parallel = bool(seen.uniforms["orthographic"])
     surface = np.append((centre * ray[:2] + ray[2:]) * (F(1) if parallel else -z), z).astype(F)
-    radius, values = F(module.model_dump()["radius"]), module
+    radius, values = F(module.values()["radius"]), module
     lift = max(F(values.bias) * radius, (F(1) if parallel else radius - surface[2]) * ray[0])
     facet = seen.textures["facetNormal"][row, column, :3].astype(F)
     receiver = Receiver(surface + facet * lift, surface, normal, facet, pixel)

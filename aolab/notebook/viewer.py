@@ -59,7 +59,7 @@ class Viewer:
         assert scene.camera is not None  # Scene frames itself
         self.scene, self.size, self.seed, self.rays = scene, size, seed, rays
         self._modules = dict(MODULES) | {module.label(): type(module)}
-        values = {name: value for name, value in module.model_dump().items() if name in module.model_fields_set}
+        values = {name: value for name, value in module.values().items() if name in module.model_fields_set}
         self._start = module.label(), values
         self._home = camera or scene.camera
         self.view, self.panel, self.help, self.moving = "result", False, False, False

@@ -254,7 +254,7 @@ class Lab:
             "renderer": context.renderer(),
             "scene": scene.source,
             "module": module.name or type(module).__name__,
-            "parameters": module.model_dump(),
+            "parameters": module.values(),
             "question": asdict(module.question()),
             "camera": asdict(view.camera),
             "size": list(view.size),

@@ -58,7 +58,7 @@ class FrameContext:
     def parameters(self) -> Bindings:
         """The module's numbers, as uniforms and as constants, and all that its measure gives."""
         numbers, owner = self.module.numbers(), f"the parameters of {self.module.label()}"
-        words = {name: value for name, value in self.module.model_dump().items() if isinstance(value, str)}
+        words = {name: value for name, value in self.module.values().items() if isinstance(value, str)}
         own = Bindings(owner, uniforms=numbers, constants=numbers, words=words)
         if "measure" not in self.module.choices:
             return own

@@ -54,7 +54,7 @@ class Entry:
         return {
             "module": self.module.name,
             "label": self.label,
-            "parameters": self.module.model_dump(),
+            "parameters": self.module.values(),
             "milliseconds": self.milliseconds,
             **self.info,
             **self.comparison.to_dict(),
@@ -188,9 +188,9 @@ def _with_radius(module: Module, radius: float | None) -> Module:
 
 def label(module: Module, scene: Scene) -> str:
     """The name of a module, and its parameters that differ from the defaults."""
-    defaults = type(module)().resolved(scene).model_dump()
+    defaults = type(module)().resolved(scene).values()
     changed = [f"{key}={value:g}" if isinstance(value, float) else f"{key}={value}"
-               for key, value in module.model_dump().items() if value != defaults.get(key)]  # fmt: skip
+               for key, value in module.values().items() if value != defaults.get(key)]  # fmt: skip
     return " ".join([module.name or type(module).__name__, *changed])
 
 

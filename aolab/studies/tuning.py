@@ -36,7 +36,7 @@ class Tuning:
     def preset(self) -> dict[str, Any]:
         """The tuned values, and other values that differ from the defaults: `aolab.SSAO(**preset)`."""
         usual = type(self.tuned)()
-        values = self.tuned.model_dump()
+        values = self.tuned.values()
         return {key: values[key] for key in values if key in self.parameters or values[key] != getattr(usual, key)}
 
     def mean(self, name: str, *, held_out: bool) -> float:
@@ -52,7 +52,7 @@ class Tuning:
         return {
             **self.info,
             "module": label(type(self.module)),
-            "before": self.module.model_dump(),
+            "before": self.module.values(),
             "preset": self.preset,
             **means,
             "views": [asdict(row) for row in self.rows],

@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 import aolab
+from aolab.modules import MODULES
+from aolab.modules.occluders import Depth, Height, Product
 
 PACKAGE = Path(aolab.__file__).parent
-FOLDERS = ("pipeline", "gl", "modules/occluders", "modules/filters")  # where textures are taken and given back
+FOLDERS = ("pipeline", "gl", "modules")  # where textures are taken and given back, and where they are chosen
+TWO = Product(first=Depth(), second=Height())
 Place = tuple[str, int]
 
 
@@ -79,3 +82,14 @@ def test_an_interrupt_at_every_line():
                 np.testing.assert_array_equal(frame[name], right[name], err_msg=f"{name}, after {place}")
         before = now
     assert interrupts > 0.9 * len(places)
+
+
+@pytest.mark.parametrize(
+    "module", [MODULES["ssdo"](bounces=1), MODULES["ssao"](occluders=TWO)], ids=["ssdo", "product"]
+)
+def test_an_interrupt_in_the_parameters_stays_an_interrupt(module):
+    """pydantic turns an exception in a serializer, KeyboardInterrupt too, into an error that sweeps record."""
+    places = lines_of(lambda: module.replace().values())
+    assert places
+    for place in places:
+        assert interrupted_at(lambda: module.replace().values(), place), place

@@ -2,8 +2,6 @@
 
 from typing import Any
 
-from pydantic import model_serializer
-
 from ...gl.bindings import Bindings, joined
 from ...scene.view import View
 from .base import Drawing, OccluderKind, Occluders, Textures
@@ -23,11 +21,9 @@ class Product(OccluderKind):
     first: OccluderKind
     second: OccluderKind
 
-    @model_serializer
-    def _flat(self) -> dict[str, Any]:
-        """The names of the two kinds, and their parameters."""
-        parameters = {**self.first.model_dump(), **self.second.model_dump()}
-        return {"first": self.first.name, "second": self.second.name, **parameters}
+    def values(self) -> dict[str, Any]:
+        """{name: value}: the names of the two kinds, and their parameters."""
+        return {"first": self.first.name, "second": self.second.name, **self.first.values(), **self.second.values()}
 
     def draw(self, drawing: Drawing, view: View, surfaces: Textures, sends: bool) -> Occluders:
         drawn = [kind.draw(drawing, view, surfaces, sends) for kind in (self.first, self.second)]

@@ -147,7 +147,7 @@ def identity(case: Case, settings: Settings) -> str:
     A case that cannot be resolved, say for a wrong value, is identified by its inputs alone.
     """
     try:
-        module: Any = repr(case_module(case).model_dump())
+        module: Any = repr(case_module(case).values())
         source = inspect.getsource(type(case_module(case))) if module_name(case.module) not in MODULES else ""
         scene = _scene_digest(loaded(case.scene))
     except Exception:  # the case itself will raise it, and record it

@@ -198,8 +198,8 @@ def _key(scene: Any) -> Any:
 
 def _changes(module: Module) -> str:
     """The parameters that differ from the defaults, as `aolab.render` takes them behind a name: `?steps=8&bias=0`."""
-    defaults = type(module)().model_dump()
-    changed = [f"{name}={value}" for name, value in module.model_dump().items() if value != defaults.get(name)]
+    defaults = type(module)().values()
+    changed = [f"{name}={value}" for name, value in module.values().items() if value != defaults.get(name)]
     return f"?{'&'.join(changed)}" if changed else ""
 
 
