@@ -8,6 +8,7 @@ import sys
 import textwrap
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
+from itertools import count
 from pathlib import Path
 
 import moderngl
@@ -34,9 +35,13 @@ PAPERS = CHECKOUT / "tests" / "papers"
 # files whose slow tests start programs, kernels or clusters, or draw for many seconds: `make long`
 LONG = (
     "test_readme", "test_bake", "test_interrupts", "test_notebooks", "test_claims", "test_reproduce", "test_sweep",
-    "test_quality", "test_wheel", "test_jupyterlab", "test_otter", "test_grade", "test_measuring",
-    "test_exercises",
+    "test_quality", "test_wheel", "test_jupyterlab", "test_otter", "test_grade", "test_measuring", "test_mitsuba",
+    "test_exercises", "test_explorer", "test_explain", "test_against_truth", "test_pyrender_depth", "test_viewer",
+    "test_peers", "test_streams",
 )  # fmt: skip
+
+
+_folders = count()
 
 
 @pytest.hookimpl(tryfirst=True)  # before pytest selects by marker
@@ -65,7 +70,7 @@ def session_cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 @pytest.fixture(autouse=True)
 def cache_folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A cache of the test's own: its results reach neither another test nor the user's cache."""
-    folder = tmp_path_factory.mktemp("cache")
+    folder = tmp_path_factory.mktemp(f"cache-{next(_folders)}", numbered=False)  # numbered reads all names each time
     monkeypatch.setenv("AOLAB_CACHE", str(folder))
     return folder / "references"
 

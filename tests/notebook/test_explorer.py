@@ -14,6 +14,8 @@ from aolab.modules import MODULES
 from aolab.modules.parameters import own_first
 from aolab.notebook.controls import controls
 
+pytestmark = pytest.mark.slow
+
 SIZE = (64, 48)
 
 

@@ -39,6 +39,9 @@ def test_reading_visibility_lights_nothing(lab, boxes):
     assert frame.timings == passes  # computed once
 
 
+OTHERS = [aolab.Environment(np.full((4, 8, 3), radiance)) for radiance in (0.5, 1.0, 2.0)]
+
+
 @pytest.mark.parametrize("name", MODULES)
 def test_the_buffers_are_listed_before_they_are_computed(lab, boxes, name):
     frame = lab.render(boxes, name, **OPTIONS.get(name, {}))
@@ -53,7 +56,7 @@ def test_other_frames_in_between_change_nothing(lab, boxes, plane, name):
     expected = buffers_of(lab.render(lit, name, **options).complete())
     frame = lab.render(lit, name, **options)
     for seed in range(3):  # other lights, sizes and environments; their textures go back to the pool
-        lab.render(plane.replace(environment=aolab.Environment.sky()), "ssdo", seed=seed).complete()
+        lab.render(plane.replace(environment=OTHERS[seed]), "ssdo", seed=seed).complete()
         lab.render(boxes, name, size=(17, 9), exposure=2.0, **options).complete()
         lab.render(boxes, name, seed=seed + 1, **options)
         gc.collect()

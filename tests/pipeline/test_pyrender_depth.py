@@ -11,6 +11,8 @@ import pytest
 import aolab
 from aolab import Camera
 
+pytestmark = pytest.mark.slow
+
 SIZE = 160, 120
 FINER = (
     9  # pyrender gives one of four subsamples, up to 3/8 pixel off; of 9×9 pixels, the middle one is nearly the centre

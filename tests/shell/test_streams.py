@@ -9,6 +9,8 @@ import time
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 COMMAND = [sys.executable, "-m", "aolab.shell.cli"]
 posix = pytest.mark.skipif(os.name != "posix", reason="devices and signals of POSIX")
 
