@@ -66,6 +66,14 @@ class Lights:
         return [self.lamps, Bindings("the environment", self.tables, environment), *reflected]
 
 
+@dataclass(frozen=True, eq=False)
+class Lit:
+    """All that has lit a frame: its lights; and its surfaces, whose occluders send light if a bounce was computed."""
+
+    lights: Lights
+    sending: SurfaceState
+
+
 def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
     """The scene's lights, with their shadow maps, as glsl/lib/lights.glsl reads them."""
     count = len(scene.lights)
