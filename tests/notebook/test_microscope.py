@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from scipy.ndimage import binary_erosion
-from small_scenes import of, quad
+from small_scenes import box, floor, of, quad
 
 import aolab
-from aolab import Camera, DirectionalLight, Environment, ParameterError
-from aolab.modules import MODULES
+from aolab import Camera, DirectionalLight, Environment, ParameterError, SpotLight
+from aolab.modules import MODULES, find
 from aolab.modules.marched import Marched
 from aolab.modules.occluders import OCCLUDERS, Depth, Height, Product, Voxels
 from aolab.notebook.microscope.blocking import OCCLUDER_TWINS
@@ -31,13 +31,28 @@ CASES = [
     ("ssdo", {"bounces": 1, "occluders": Product(first=Depth(), second=Voxels(voxels=64))}),
     ("ssbn", {}),
     ("ssbn", {"weighting": "uniform"}),
-    ("instant_radiosity", {}),
     ("s3ho", {}),
     ("s3ho", {"strength": 3.0, "indirect": True}),
     ("s3ho", {"strength": 3.0, "estimator": "plain"}),
     ("rotated_ssao", {}),
     ("rotated_ssao", {"scale": 0.5, "occluders": "layers", "strength": 2.0}),
+    ("hao", {}),
+    ("hao", {"occluders": "depth", "spread": 0.6, "scale": 1.0}),
+    ("hao", {"voxel_region": "middle"}),
+    ("ambient_transfer", {}),
+    ("ambient_transfer", {"albedo_source": "radiance", "occluders": "layers"}),
+    ("ambient_transfer", {"silhouette_elimination": False, "measure": "exponential", "steps": 3}),
+    ("rsm", {}),
+    ("rsm", {"gather": "full", "rsm_radius": 0.2, "rsm_samples": 64}),
+    ("rsm", {"gather": "low", "rsm_samples": 64}),
+    ("ssao+rsm", {"scale": 0.5}),
+    ("environment_vpl", {"environment_lights": 40}),
+    ("environment_vpl", {"fill": 4, "occluders": "voxels", "environment_lights": 20}),
+    ("instant_radiosity", {"fill": 3, "scale": 0.5, "bounce_lights": 40}),
+    ("ssdo+instant_radiosity", {"bounce_lights": 10}),
 ]
+
+LAMPS = (DirectionalLight((-0.5, -1, -0.3)), SpotLight((2, 4, 3), (-0.5, -1, -0.6), (30, 30, 30), inner=20, outer=35))
 
 
 def pixels(frame, count: int) -> list[tuple[int, int]]:
@@ -47,18 +62,22 @@ def pixels(frame, count: int) -> list[tuple[int, int]]:
     return [(int(columns[i]), int(rows[i])) for i in chosen]
 
 
-def test_every_module_whose_samples_have_a_twin_is_a_case():
-    assert {name for name, _ in CASES} == {name for name, module in MODULES.items() if taking(module())}
+@pytest.mark.parametrize("module", MODULES)
+def test_every_module_that_takes_samples_is_a_case(module):
+    assert bool(taking(MODULES[module]())) == (module != "none")
+    assert (module in {name for name, _ in CASES}) == (module != "none")
 
 
 @pytest.mark.filterwarnings("ignore::aolab.Notice")  # the floor is not closed
 @pytest.mark.parametrize(("module", "parameters"), CASES, ids=str)
 def test_the_replay_is_the_shader(lab, boxes, module, parameters):
-    sky = Environment.sky()
-    frame = lab.render(boxes.replace(environment=sky), module, radius=1.0, seed=3, **parameters)
+    scene = boxes.replace(environment=Environment.sky(), lights=LAMPS)
+    radius = {"radius": 1.0} if find(module, MODULES).has_radius() else {}
+    frame = lab.render(scene, module, seed=3, **radius, **parameters)
     seen = [aolab.microscope(frame, pixel) for pixel in pixels(frame, 60)]
     assert max(one.difference for one in seen) <= 1e-3
-    assert any(one.passes[0].sets[0].blocked.any() for one in seen)
+    tested = [one.sets[0] for pixel in seen for one in pixel.passes if one.name not in ("rsm gather", "rsm complete")]
+    assert not tested or any(one.blocked.any() for one in tested)
 
 
 def test_every_kind_of_occluders_has_a_twin():
@@ -124,11 +143,43 @@ def test_your_own_marched_module_is_replayed(lab, boxes):
     assert max(aolab.microscope(frame, pixel).difference for pixel in pixels(frame, 10)) <= 1e-3
 
 
-def test_it_has_a_picture(lab, boxes):
-    frame = lab.render(boxes, "ssao", radius=1.0)
-    picture = np.asarray(aolab.microscope(frame, pixels(frame, 1)[0]).picture())
-    assert picture.shape == (414, 900, 3)
+@pytest.mark.parametrize("module", ["ssao", "rotated_ssao", "rsm", "environment_vpl", "instant_radiosity"])
+def test_it_has_a_picture_with_a_row_for_each_pass(lab, boxes, module):
+    frame = lab.render(boxes.replace(lights=LAMPS), module)
+    seen = aolab.microscope(frame, pixels(frame, 1)[0])
+    picture = np.asarray(seen.picture())
+    assert picture.shape == (414 * len(seen.passes), 900, 3)
     assert picture.std() > 5
+
+
+def test_a_scene_without_lamps_has_no_virtual_lights(lab, boxes):
+    frame = lab.render(boxes, "instant_radiosity")
+    bounce = aolab.microscope(frame, pixels(frame, 1)[0]).passes[1]
+    assert len(bounce.sets[0].ends) == 0
+    assert bounce.values["reflective_irradiance"] == pytest.approx(0)
+    assert "0 of 0 lights open" in str(bounce)
+
+
+def test_virtual_lights_behind_a_wall_are_blocked_by_it(lab):
+    """From the floor at (1, 0, 0), a wall 10 wide and 8 high in the plane x = 0 hides the low lights on its side."""
+    scene = of(floor(6), box((-0.2, 0, -5), (0, 8, 5), name="wall"), camera=Camera((3, 3, 0), (1, 0, 0), fov=40))
+    frame = lab.render(scene, "environment_vpl")
+    (seen,) = aolab.microscope(frame, (32, 24)).passes
+    samples = seen.sets[0]
+    x, y, z = ((samples.ends - samples.receiver) @ frame.camera.view_from_world[:3, :3]).T
+    low = (x < 0) & (np.abs(z) < -3 * x) & (y > 0) & (y < -3 * x)
+    assert low.sum() > 3
+    assert {seen.blockers[i] for i in np.flatnonzero(low)} == {"wall"}
+    assert not samples.contributions["environment_irradiance"][low].any()
+    assert samples.open[(x > 0) & (y > 0)].all()
+
+
+def test_a_pixel_light_is_on_the_surface_that_a_lamp_lights(lab, boxes):
+    frame = lab.render(boxes.replace(lights=LAMPS[:1]), "rsm")
+    (seen,) = aolab.microscope(frame, pixels(frame, 1)[0]).passes
+    assert "48 pixel lights" not in str(seen)  # one map has 24
+    assert "24 pixel lights, not tested for blocking" in str(seen)
+    assert "pixel light 0: on floor at" in str(seen)
 
 
 def test_wrong_pixels_and_frames_are_refused(lab, plane, boxes):

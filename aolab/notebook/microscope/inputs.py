@@ -10,9 +10,11 @@ import numpy as np
 from ...gl.texture import Size, read
 from ...gl.thread import handed
 from ...modules.base import Module
+from ...modules.estimate import Estimate
 from ...modules.occluders import Product
 from ...modules.occluders.base import OccluderKind
 from ...modules.passes import Pass
+from ...modules.virtual_lights import VirtualLights
 from ...pipeline.frame import Frame
 from ...pipeline.lighting import Lit
 from ...pipeline.state import SurfaceState
@@ -77,20 +79,32 @@ def _parts(kind: OccluderKind) -> tuple[OccluderKind, ...]:
     return (*_parts(kind.first), *_parts(kind.second)) if isinstance(kind, Product) else (kind,)
 
 
-def inputs(frame: Frame, step: Pass, bounces: bool) -> Inputs:
-    """The inputs of a frame's pass. With `bounces`, it runs over lit surfaces, where occluders send light."""
+def inputs(frame: Frame, step: Pass, estimate: Estimate | None, bounces: bool) -> Inputs:
+    """The inputs of a frame's pass: of an `estimate`, or of the lighting for None.
+
+    With `bounces`, the pass runs over lit surfaces, where occluders send light.
+    """
     lit: Lit | None = frame.lit
-    state: SurfaceState = lit.sending if bounces and lit else frame.kept
-    known, module = state.frame, state.frame.module
-    view, parameters = state.small_view, known.parameters
-    given = [state.occluders.bindings, *(lit.lights.seen_from(view) if lit else [])]
+    state: SurfaceState = lit.sending if lit and bounces else frame.kept
+    if lit and estimate and estimate.scale:
+        state = handed(lit.at_scale)(estimate.scale)
+    module = state.frame.module
+    # the lighting runs at full size, under the shading normals
+    view = state.small_view if estimate else state.frame.view
+    surfaces = facing(state.small, module.normals) if estimate else state.large
+    parameters = state.frame.parameters
     textures: dict[str, Texture] = dict(frame.made)
     uniforms: dict[str, Any] = {**view.uniforms, **view.constants, **parameters.uniforms, **parameters.constants}
-    for one in given:
+    for one in [state.occluders.bindings, *(lit.lights.seen_from(view) if lit else [])]:
         textures |= one.textures
         uniforms |= {**one.uniforms, **one.constants}
-    textures |= facing(state.small, module.normals)
+    textures |= surfaces
+    if lit and isinstance(step, VirtualLights):
+        maps = lit.lights.virtual[step.name]
+        textures |= {"light_rows": maps.rows, "shadow_atlas": maps.atlas, "shadow_table": maps.table}
+        uniforms["light_count"] = maps.count
     assert frame.scene is not None  # a lab rendered the frame
-    return Inputs(
-        step, module, known.occluders, frame.scene, view.size, textures, {**uniforms, **step.constants}, known.seeds
-    )
+    uniforms |= step.constants
+    # the lighting takes the first sample set only, an estimate all of them
+    seeds = state.frame.seeds if estimate else state.frame.seeds[:1]
+    return Inputs(step, module, state.frame.occluders, frame.scene, view.size, textures, uniforms, seeds)

@@ -11,7 +11,7 @@ from ...scene.view import View
 from .sampled import Sampled
 from .samples import Samples
 
-OPEN, BLOCKED = "#1f77b4", "#d95f02"
+OPEN, BLOCKED, LIGHT = "#1f77b4", "#d95f02", "#ffd92f"
 MOST = 64  # ways that are drawn
 LEAST_CROP = 24  # pixels: half the side of the crop
 THIN, THICK = 0.5, 2.5  # lines of ways that contribute nothing, and most
@@ -32,7 +32,7 @@ def draw(frame: Frame, pixel: tuple[int, int], passes: Sequence[Sampled]) -> Ima
         _in_space(figure.add_subplot(count, 2, 2 * number + 2, projection="3d"), one.sets[0])
     figure.suptitle(
         f"{frame.info['module']}, pixel {pixel}; blue open, orange blocked, black: surfaces "
-        "that block; thick: contributes most",
+        "that block; thick: contributes most; stars: lights",
         fontsize=9,
     )
     figure.tight_layout()
@@ -40,27 +40,20 @@ def draw(frame: Frame, pixel: tuple[int, int], passes: Sequence[Sampled]) -> Ima
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
 
-def _drawn(samples: Samples) -> np.ndarray:
-    """(n,) int: the numbers of the ways that are drawn, at most `MOST`, evenly."""
-    count = len(samples.ends)
-    return np.arange(count) if count <= MOST else np.arange(MOST) * count // MOST
-
-
 def _widths(samples: Samples) -> np.ndarray:
     """(N,): the width of each way's line, which grows with its contribution."""
-    size = np.abs(next(iter(samples.contributions.values()))).max(axis=1)
-    return THIN + (THICK - THIN) * size / max(size.max(), 1e-20)
+    return THIN + (THICK - THIN) * samples.sizes / max(samples.sizes.max(initial=0), 1e-20)
 
 
 def _over_the_image(axes, frame: Frame, pixel: tuple[int, int], one: Sampled) -> None:
     samples = one.sets[0]
     column, row = pixel
-    chosen, widths = _drawn(samples), _widths(samples)
+    chosen, widths = samples.foremost(MOST), _widths(samples)
     start = np.array((column + 0.5, row + 0.5))
     points, ends = _pixels(samples.points, frame), _pixels(samples.ends, frame)
-    shown = points if samples.points.size else ends
+    shown = ends if samples.until == "light" else points
     half = np.abs(shown - start).max(initial=0, where=np.isfinite(shown))
-    half = min(max(LEAST_CROP, 1.15 * float(half)), max(frame.size))
+    half = max(LEAST_CROP, 1.15 * float(half))
     axes.imshow(frame.image, extent=(0, frame.size[0], frame.size[1], 0), interpolation="nearest")
     for i in chosen:
         color = OPEN if samples.open[i] else BLOCKED
@@ -68,7 +61,10 @@ def _over_the_image(axes, frame: Frame, pixel: tuple[int, int], one: Sampled) ->
     for blocked, color in ((False, OPEN), (True, BLOCKED)):
         axes.scatter(*points[chosen][samples.blocked[chosen] == blocked].T, s=12, color=color)
     axes.plot(*start, "o", markersize=7, markerfacecolor="white", markeredgecolor="black")
-    axes.set(xlim=(start[0] - half, start[0] + half), ylim=(start[1] + half, start[1] - half))
+    if samples.until == "light":
+        axes.scatter(*ends[chosen].T, s=30, marker="*", color=LIGHT, edgecolor="black", linewidth=0.4, zorder=3)
+    (left, top), (right, bottom) = np.clip([start - half, start + half], 0, frame.size)
+    axes.set(xlim=(left, right), ylim=(bottom, top))
     axes.set(xlabel="column", ylabel="row")
     name, value = next(iter(one.values.items()))
     axes.set_title(f"{one.name}: {name} {np.array2string(value, precision=3)}", fontsize=9)
@@ -81,10 +77,9 @@ def _in_space(axes, samples: Samples) -> None:
         """matplotlib's vertical axis is z."""
         return np.stack([vectors[..., 0], -vectors[..., 2], vectors[..., 1]], axis=-1)
 
-    chosen, widths = _drawn(samples), _widths(samples)
+    chosen, widths = samples.foremost(MOST), _widths(samples)
     start = turned(samples.receiver)
-    lengths = np.linalg.norm(samples.ends - samples.receiver, axis=1)
-    reach = float(lengths.max())
+    reach = float(samples.distances[chosen].max(initial=1e-6))
     for i in chosen:
         color = OPEN if samples.open[i] else BLOCKED
         axes.plot(*np.stack([start, turned(samples.ends[i])]).T, color=color, linewidth=widths[i], alpha=0.6)
@@ -94,6 +89,8 @@ def _in_space(axes, samples: Samples) -> None:
     occluders = turned(samples.occluders[chosen])[blocked]
     near = np.linalg.norm(occluders - start, axis=-1) < 1.2 * reach
     axes.scatter(*occluders[near].T, s=8, color="black")
+    if samples.until == "light":
+        axes.scatter(*turned(samples.ends[chosen]).T, s=30, marker="*", color=LIGHT, edgecolor="black", linewidth=0.4)
     axes.quiver(*start, *(turned(samples.normal) * reach * 0.6), color="0.3", linewidth=1.5)
     half = 0.6 * reach
     limits = [(middle - half, middle + half) for middle in start + turned(samples.normal) * reach / 2]

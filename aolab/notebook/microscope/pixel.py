@@ -37,11 +37,7 @@ class Microscope:
         return "\n".join([f"pixel {self.pixel} of {self.frame.info['module']}", *map(str, self.passes)])
 
     def __repr__(self) -> str:
-        found = [
-            f"{one.name} {one.sets[0].open.sum()} of {len(one.sets[0].open)} {one.sets[0].noun}s open"
-            for one in self.passes
-        ]
-        return f"<Microscope of pixel {self.pixel}: {', '.join(found)}>"
+        return f"<Microscope of pixel {self.pixel}: {', '.join(f'{one.name} {one.summary}' for one in self.passes)}>"
 
     def picture(self) -> Image.Image:
         """The samples over the image, and in three dimensions. Blue: open; orange: blocked; black: the blockers."""
@@ -56,10 +52,10 @@ class Microscope:
 def microscope(frame: Frame, pixel: tuple[int, int]) -> Microscope:
     """Every sample that a frame's module took for `pixel` (column, row), counted from the top left.
 
-    The samples are computed again in NumPy from the frame's depths and normals: directions, distances, whether and by
-    which mesh each is blocked, and the contribution of each to the value. `Microscope.difference` compares the replayed
-    values with the shader's. Works for all modules that take samples, with any occluders, and for your own modules that
-    derive from `aolab.modules.marched.Marched` and write `visibility`.
+    The samples are computed again in NumPy from the textures that the shader read: directions, points or lights,
+    whether and by which mesh each is blocked, and the contribution of each to the value. `Microscope.difference`
+    compares the replayed values with the shader's. Works for all modules that take samples, with any occluders, and for
+    your own modules that derive from `aolab.modules.marched.Marched` and write `visibility`.
     Raises `ParameterError` for another module, a frame that no lab rendered, and a pixel outside or in the background.
     """
     column, row = inside(pixel, frame.size, "microscope")
@@ -79,22 +75,27 @@ def microscope(frame: Frame, pixel: tuple[int, int]) -> Microscope:
             f"microscope: the module {frame.info.get('module')} takes no samples that can be computed again; modules "
             f"that do: {covered}, and your own that derive from aolab.modules.marched.Marched"
         )
-    return Microscope(frame, (column, row), tuple(_sampled(frame, (column, row), one) for one in passes))
+    found = tuple(filter(None, (_sampled(frame, (column, row), one) for one in passes)))
+    if not found:
+        raise ParameterError(
+            f"microscope: pixel ({column}, {row}) is in the background at the lower resolution of the estimate, "
+            "{}x{}".format(*state.small_view.size)
+        )
+    return Microscope(frame, (column, row), found)
 
 
-def _sampled(frame: Frame, pixel: tuple[int, int], taken: Taking) -> Sampled:
-    """The samples of one pass at a pixel."""
+def _sampled(frame: Frame, pixel: tuple[int, int], taken: Taking) -> Sampled | None:
+    """The samples of one pass at a pixel; None if it took none there."""
     step, twin = taken.step, taken.twin
-    names = {name: f"{name}_raw" if taken.estimate else name for name in step.outputs}
+    names = {name: f"{name}_raw" if taken.estimate else name for name in (taken.estimate or step).outputs}
     raw = {name: frame.channels(found) for name, found in names.items() if found in frame.buffers}
-    seen = inputs(frame, step, taken.bounces)
+    seen = inputs(frame, step, taken.estimate, taken.bounces)
     column, row = texel = texel_of(pixel, frame.size, seen.size)
     if seen["viewZ"][row, column] == -np.inf:
-        raise ParameterError(
-            f"microscope: pixel {pixel} is in the background at the lower resolution of the pass '{step.name}', "
-            "{}x{}".format(*seen.size)
-        )
-    sets = tuple(twin(seen, texel, seed) for seed in seen.seeds)
+        return None
+    sets = tuple(filter(None, (twin(seen, texel, seed) for seed in seen.seeds)))
+    if not sets:
+        return None
     values = {name: np.mean([one.values[name] for one in sets], axis=0) for name in sets[0].values}
     rendered = {
         name: np.atleast_1d(raw[name][row, column])[: len(value)].astype(np.float64) for name, value in values.items()

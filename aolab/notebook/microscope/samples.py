@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -14,7 +15,8 @@ class Samples:
     units.
 
     `receiver` (3,): the shaded point, lifted off its surface; `normal` (3,), unit.
-    `ends` (N, 3): the end of each way. With `far`, the ways have no end, and `ends` are points on them.
+    `ends` (N, 3): the end of each way, by `until`: the `reach` within which occluders count, a `light`, or, for lights
+    at `infinity`, a point on the way.
     `points` (N, S, 3): the tested points; `blocked` (N, S) bool; `occluders` (N, S, 3): the surface point that each
     point was tested against. S is 0 if the shader tests nothing.
     `contributions` {buffer: (N, channels)}: the part of each way in the shader's outputs, and `values`
@@ -33,7 +35,7 @@ class Samples:
     contributions: Mapping[str, np.ndarray]
     values: Mapping[str, np.ndarray]
     partly: np.ndarray | None = None
-    far: bool = False
+    until: Literal["reach", "light", "infinity"] = "reach"
 
     @property
     def shares(self) -> np.ndarray:
@@ -46,6 +48,20 @@ class Samples:
     def open(self) -> np.ndarray:
         """(N,) bool: the ways that are more open than blocked."""
         return self.shares > 0.5
+
+    @property
+    def distances(self) -> np.ndarray:
+        """(N,): from the receiver to the end of each way."""
+        return np.linalg.norm(self.ends - self.receiver, axis=1)
+
+    @property
+    def sizes(self) -> np.ndarray:
+        """(N,): the size of each way's contribution to the first buffer."""
+        return np.abs(next(iter(self.contributions.values()))).max(axis=1)
+
+    def foremost(self, most: int) -> np.ndarray:
+        """(n,) int: the numbers, in their order, of the at most `most` ways that contribute most."""
+        return np.sort(np.argsort(-self.sizes, kind="stable")[:most])
 
     @property
     def first(self) -> np.ndarray:

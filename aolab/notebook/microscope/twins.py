@@ -7,13 +7,17 @@ from ...modules import Module
 from ...modules.estimate import Estimate
 from ...modules.marched import Marched
 from ...modules.passes import Pass
+from .ambient_transfer import ambient_transfer
+from .hao import hao
 from .inputs import Inputs
 from .marched import s3ho, ssao, ssbn, ssdo, ssdo_bounce, visibility
 from .receiver import Texel
 from .rotated_ssao import rotated_ssao
+from .rsm import rsm, rsm_complete
 from .samples import Samples
+from .virtual_lights import virtual_lights
 
-Twin = Callable[[Inputs, Texel, int], Samples]  # of a texel and a seed
+Twin = Callable[[Inputs, Texel, int], Samples | None]  # of a texel and a seed; None for a texel without samples
 
 TWINS: dict[str, Twin] = {
     "ssao.frag": ssao,
@@ -23,6 +27,11 @@ TWINS: dict[str, Twin] = {
     "s3ho.moments.frag": s3ho,
     "s3ho.frag": s3ho,
     "rotated_ssao.frag": rotated_ssao,
+    "hao.frag": hao,
+    "ambient_transfer.frag": ambient_transfer,
+    "rsm.gather.frag": rsm,
+    "rsm.complete.frag": rsm_complete,
+    "virtual_lights.frag": virtual_lights,
 }
 
 
