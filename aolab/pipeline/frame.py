@@ -61,6 +61,7 @@ class Frame:
     table: Mapping[str, Buffer] = field(default_factory=lambda: BUFFERS, repr=False)  # describes the buffers
     scene: Scene | None = field(default=None, repr=False)  # as it was lit
     kept: Any = field(default=None, repr=False)  # for its lab, to light it again
+    lit: Any = field(default=None, repr=False)  # after its lighting, all that has lit it
     later: Sequence[Later] = field(default=(), repr=False)
     _arrays: dict[str, np.ndarray] = field(default_factory=dict, repr=False)
 
@@ -196,7 +197,15 @@ class Frame:
     def __getstate__(self) -> dict[str, Any]:
         """The state for pickle: every buffer as an array. The pickled frame can be compared, but not lit again."""
         arrays = {name: self[name] for name in self.buffers}
-        return {**self.__dict__, "made": arrays, "derived": {}, "kept": None, "later": (), "_arrays": dict(arrays)}
+        return {
+            **self.__dict__,
+            "made": arrays,
+            "derived": {},
+            "kept": None,
+            "lit": None,
+            "later": (),
+            "_arrays": dict(arrays),
+        }
 
     def _repr_png_(self) -> bytes:
         return display.frame_png(self)

@@ -36,7 +36,7 @@ from .estimate import estimate
 from .frame import Frame, Later, lend, noting
 from .geometry import Geometry
 from .last_frame import NO_LAST, last_frame
-from .lighting import Display, Lights, ToneMap
+from .lighting import Display, Lights, Lit, ToneMap
 from .pass_runner import Buffers, PassRunner
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
@@ -338,7 +338,7 @@ class Lab:
         runner, view = rasterizer.runner, state.frame.view
         with self._lending(runner):
             lights = lights or self._lights(state)
-            buffers = lighting.light(state, lights)
+            buffers, sending = lighting.light(state, lights), state
             if bounce := state.frame.module.bounce():
                 sender, sending = senders(state, buffers, lights)
                 known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
@@ -348,6 +348,7 @@ class Lab:
                 buffers |= lights.reflective.buffers
             sky = self._environments.of(lights.sky)
             buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
+            result.lit = Lit(lights, sending)
             refuse_exhaustion(f"the light of a frame of {view.size[0]}x{view.size[1]}")
         self._waiting.discard(result)
         lend(result, self._pool, runner.lent)

@@ -66,6 +66,24 @@ class Lights:
         return [self.lamps, Bindings("the environment", self.tables, environment), *reflected]
 
 
+@dataclass(frozen=True, eq=False)
+class Lit:
+    """All that has lit a frame: its lights; and its surfaces, whose occluders send light if a bounce was computed.
+
+    `scaled`: the same surfaces at other scales than the module's, for those who look at the passes there.
+    """
+
+    lights: Lights
+    sending: SurfaceState
+    scaled: dict[float, SurfaceState] = field(default_factory=dict)
+
+    def at_scale(self, scale: float) -> SurfaceState:
+        """The surfaces at a scale, made at the first call. The textures live as long as the frame."""
+        if scale not in self.scaled:
+            self.scaled[scale] = self.sending.at_scale(scale)
+        return self.scaled[scale]
+
+
 def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
     """The scene's lights, with their shadow maps, as glsl/lib/lights.glsl reads them."""
     count = len(scene.lights)
