@@ -34,6 +34,7 @@ EXTRAS = {
     "tune": Extra("optuna", "optuna", "fitting parameters"),
     "mitsuba": Extra("mitsuba", "mitsuba", "a path tracer as second opinion"),
     "draco": Extra("DracoPy", "DracoPy", "glTF files that Draco compressed"),
+    "meshopt": Extra("meshopt", "meshopt", "glTF files that meshoptimizer compressed"),
     "notebook": Extra("anywidget", "anywidget", "a widget in a notebook"),
     "jupyter": Extra("IPython", "jupyterlab", "frames that are shown in notebooks"),
     "pyvista": Extra("pyvista", "pyvista", "a race against VTK's ambient occlusion"),

@@ -119,7 +119,7 @@ def main(stage: str) -> None:
         if stage == "dev":
             offer_libatomic()
         pip_install("pip>=25.1")  # the first version with --group
-        every = "[tune,mitsuba,notebook,draco,sweep,film,view]"  # the tests try every extra for real
+        every = "[tune,mitsuba,notebook,draco,meshopt,sweep,film,view]"  # the tests try every extra for real
         extras = every if stage == "dev" else ""
         pip_install("--group", stage, "--editable", f".{extras}")
 

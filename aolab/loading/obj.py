@@ -80,13 +80,13 @@ def _by_keyword(text: str) -> tuple[dict[str, Lines], list[tuple[int, str]]]:
         lines = [line.replace("\t", " ") for line in lines]
     if "\n " in text or text.startswith(" ") or "\t" in text:
         lines = [line.lstrip() for line in lines]
-    heads = [line[:2] for line in lines]
+    heads = np.array([line[:2] for line in lines])
     found = {}
     for keyword, head in {"v": "v ", "vt": "vt", "vn": "vn", "f": "f "}.items():
-        places = [place for place, start in enumerate(heads) if start == head]
-        found[keyword] = Lines([lines[place][2:] for place in places], np.array(places, np.int64) + 1, keyword)
-    known = {"v ", "vt", "vn", "f ", ""}
-    return found, [(number + 1, lines[number]) for number, head in enumerate(heads) if head not in known]
+        places = np.flatnonzero(heads == head)
+        found[keyword] = Lines([lines[place][2:] for place in places.tolist()], places + 1, keyword)
+    others = np.flatnonzero(~np.isin(heads, ["v ", "vt", "vn", "f ", ""]))
+    return found, [(place + 1, lines[place]) for place in others.tolist()]
 
 
 def _statements(rest: list[tuple[int, str]], library: Library, notes: Notes) -> tuple[list[str], list[int]]:

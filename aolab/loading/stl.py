@@ -16,6 +16,7 @@ from .parts import Content, Notes, Part, Placed
 
 HEADER, TRIANGLE = 84, 50  # bytes of a binary file's header, with the count, and of a triangle
 _VERTEX = re.compile(rb"\bvertex\s+(\S+)\s+(\S+)\s+(\S+)", re.IGNORECASE)
+_LINE = re.compile(rb"\bvertex([^\n]*)")
 _FACET, _END, _NORMAL = (
     re.compile(word, re.IGNORECASE) for word in (rb"\bouter\s+loop\b", rb"\bendloop\b", rb"\bfacet\s+normal\b")
 )
@@ -61,9 +62,9 @@ def _ascii(data: bytes) -> np.ndarray:
     name, newline, rest = data.replace(b"\r", b"\n").lstrip(b"\xef\xbb\xbf \t\n").partition(b"\n")
     body = rest if newline and _NORMAL.search(name) is None else name + newline + rest
     # exporters write a vertex a line: those lines alone are read; other layouts take three times as long
-    lines = [line for line in body.split(b"\n") if b"vertex" in line]
+    lines = _LINE.findall(body)
     facets = body.count(b"outer loop")
-    quick = numbers(b" ".join(lines).replace(b"vertex", b""), float, 9 * facets)
+    quick = numbers(b" ".join(lines), float, 9 * facets)
     if quick is not None and facets == body.count(b"endloop") > 0:
         return quick.reshape(-1, 3)
     facets, ends = (len(pattern.findall(body)) for pattern in (_FACET, _END))

@@ -6,19 +6,21 @@ Only the standard library is imported here, so that an interrupt while the rest 
 import codecs
 import os
 import sys
+from collections.abc import Callable
 from typing import Any
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 130  # exit codes; 130 is what shells report for SIGINT
 PLAIN = {"≥": ">=", "≤": "<=", "×": "x", "±": "+-", "→": "->", "°": " degrees", "−": "-", "–": "-", "…": "..."}
 
 
-def main() -> None:
-    """The entry point: run the command in `sys.argv` and end the process with its exit code."""
+def main(imported: Callable[[], object] = lambda: None) -> None:
+    """Run the command in `sys.argv` and end the process with its exit code; `imported` is called between the imports
+    and the run."""
     debug = "--debug" in sys.argv
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"] or ["--help"]
     _write_any_character()
     try:
-        code = _run(arguments)
+        code = _run(arguments, imported)
         if sys.stdout is not None:  # it may be closed
             sys.stdout.flush()
     except KeyboardInterrupt:
@@ -27,22 +29,25 @@ def main() -> None:
         if isinstance(error, BrokenPipeError):
             _close_output()
             sys.exit(REFUSED)  # the reader of a pipe has ended, and needs no message
-        message = _message(error, arguments)
+        interrupted = isinstance(error.__cause__, KeyboardInterrupt)  # Python 3.11, in `__set_name__` of a class
+        message = "" if interrupted else _message(error, arguments)
         if debug or message is None:
             raise
-        print("aolab:", message, file=sys.stderr)
-        code = REFUSED
+        if message:
+            print("aolab:", message, file=sys.stderr)
+        code = INTERRUPTED if interrupted else REFUSED
     if code == INTERRUPTED:
         print("aolab: interrupted", file=sys.stderr)
     sys.exit(code)
 
 
-def _run(arguments: list[str]) -> int:
+def _run(arguments: list[str], imported: Callable[[], object]) -> int:
     import warnings
 
     from ..errors import Notice
     from .app import app
 
+    imported()
     warnings.simplefilter("always", Notice)
     warnings.showwarning = _show_notice
     # typer returns the code of `typer.Exit`, and of an interrupt

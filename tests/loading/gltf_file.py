@@ -31,6 +31,7 @@ class GltfFile:
     def __init__(self, folder: Path) -> None:
         self.folder = folder
         self.data = b""
+        self.more_buffers: list[dict[str, Any]] = []  # of a .glb, behind that of `data`
         self.header: dict[str, Any] = {
             "asset": {"version": "2.0"},
             "scene": 0,
@@ -72,7 +73,7 @@ class GltfFile:
         self.header["images"] = [image]
 
     def glb(self, name: str = "model.glb") -> Path:
-        self.header["buffers"] = [{"byteLength": len(self.data)}]
+        self.header["buffers"] = [{"byteLength": len(self.data)}, *self.more_buffers]
         text = json.dumps(self.header).encode()
         text += b" " * (-len(text) % 4)
         chunks = struct.pack("<I4s", len(text), b"JSON") + text

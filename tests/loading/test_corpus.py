@@ -204,6 +204,43 @@ def compressed_by_draco(file):
     return one()
 
 
+def meshopt_view(file, stride, count, mode, data, **more):
+    """The index of a bufferView whose own bytes are in a buffer without data."""
+    compressed = {**file.header["bufferViews"][file.view(data)], "byteStride": stride, "count": count, "mode": mode}
+    extension = {"EXT_meshopt_compression": {**compressed, **more}}
+    file.header["bufferViews"].append({"buffer": 1, "byteLength": stride * count, "extensions": extension})
+    file.more_buffers = [{"byteLength": 1000, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}]
+    file.header["extensionsUsed"] = file.header["extensionsRequired"] = ["EXT_meshopt_compression"]
+    return len(file.header["bufferViews"]) - 1
+
+
+def meshopt_triangle(file, indices, mode, version, **more):
+    meshopt = pytest.importorskip("meshopt", reason="the extra meshopt")
+    corners = CORNERS.astype(np.float32)
+    rows = meshopt.encode_filter_exp(corners, 24) if more else corners
+    attributes = meshopt.encode_gltf_buffer(rows, "ATTRIBUTES", version)
+    places = meshopt.encode_gltf_buffer(np.array(indices, np.uint16), mode)
+    file.header["accessors"] = [
+        {"bufferView": meshopt_view(file, 12, 3, "ATTRIBUTES", attributes, **more),
+         "componentType": 5126, "count": 3, "type": "VEC3"},
+        {"bufferView": meshopt_view(file, 2, len(indices), mode, places),
+         "componentType": 5123, "count": len(indices), "type": "SCALAR"},
+    ]  # fmt: skip
+    file.primitive["attributes"]["POSITION"], file.primitive["indices"] = 0, 1
+    return one()
+
+
+@feature
+def compressed_by_meshopt(file):
+    return meshopt_triangle(file, [1, 2, 0], "TRIANGLES", 0)
+
+
+@feature
+def compressed_by_meshopt_with_a_filter_in_version_1(file):
+    file.primitive["mode"] = 5
+    return meshopt_triangle(file, [2, 0, 1], "INDICES", 1, filter="EXPONENTIAL")
+
+
 # --- nodes
 
 

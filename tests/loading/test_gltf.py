@@ -276,8 +276,22 @@ def test_broken_json(gltf):
 
 
 def test_a_required_extension_that_is_not_read(gltf):
-    gltf.header["extensionsRequired"] = ["EXT_meshopt_compression", "KHR_materials_unlit"]
-    refuse(gltf.glb(), "requires EXT_meshopt_compression, which is not read")
+    gltf.header["extensionsRequired"] = ["MPEG_media", "KHR_materials_unlit"]
+    refuse(gltf.glb(), "requires MPEG_media, which is not read")
+
+
+@pytest.mark.parametrize("extension", ["KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"])
+def test_a_required_texture_that_is_not_read(gltf, extension):
+    """The surface has its base colour."""
+    gltf.attribute("TEXCOORD_0", np.zeros((3, 2), np.float32))
+    gltf.image(bufferView=gltf.view(b"no picture that is read"))
+    gltf.header["textures"] = [{"extensions": {extension: {"source": 0}}}]
+    gltf.header["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = [1, 0.5, 0, 1]
+    gltf.header["extensionsUsed"] = gltf.header["extensionsRequired"] = [extension]
+    with pytest.warns(Notice) as caught:
+        scene = aolab.load(gltf.glb())
+    assert any(f"texture is in no known format ({extension}); drawn without" in str(one.message) for one in caught)
+    assert scene.instances[0].mesh.material.base_color == (1, 0.5, 0)
 
 
 @pytest.mark.parametrize(
@@ -482,16 +496,64 @@ def test_a_name_of_100_000_characters_is_shortened(gltf):
     assert len(str(caught.value)) < 500
 
 
-def test_draco_that_is_used_but_not_required(gltf, monkeypatch):
-    """Without the extra the plain arrays are drawn, where the file has some; else the part is left out."""
-    monkeypatch.setitem(sys.modules, "DracoPy", None)
+@pytest.mark.parametrize("installed", [True, False])
+def test_draco_that_cannot_be_decoded(gltf, monkeypatch, installed):
+    """The plain arrays are drawn, where the file has some; else the part is left out, and the other one drawn."""
+    if installed:
+        pytest.importorskip("DracoPy", reason="the extra draco")
+        reason = r"mesh 'triangle': bufferViews\[1\] is no readable Draco mesh"
+    else:
+        monkeypatch.setitem(sys.modules, "DracoPy", None)
+        reason = r"mesh 'triangle' is compressed with Draco, and the decoder is missing: .*pip install DracoPy"
     primitive = gltf.header["meshes"][0]["primitives"][0]
     draco = {"bufferView": gltf.view(b"no Draco"), "attributes": {"POSITION": 0}}
     primitive["extensions"] = {"KHR_draco_mesh_compression": draco}
     gltf.header["extensionsUsed"] = ["KHR_draco_mesh_compression"]
-    assert aolab.load(gltf.glb()).triangles == 1
+    with pytest.warns(Notice, match=f"drawn from its plain arrays: {reason}"):
+        assert aolab.load(gltf.glb()).triangles == 1
     del gltf.header["accessors"][0]["bufferView"]
-    refuse(gltf.glb(), r"mesh 'triangle' is compressed with Draco; pip install 'aolab\[draco\]' reads it", SceneError)
+    refuse(gltf.glb(), reason, SceneError)
+    corners = gltf.accessor(np.float32([(0, 0, 0), (0, 2, 0), (0, 0, 2)]))
+    gltf.header["meshes"][0]["primitives"].append({"attributes": {"POSITION": corners}})
+    with pytest.warns(Notice, match=f"left out: {reason}"):
+        assert aolab.load(gltf.glb()).bounds[1].tolist() == [0, 2, 2]
+
+
+def test_draco_indices_without_plain_ones_are_no_fallback(gltf):
+    """The corners alone would be drawn in the wrong order."""
+    primitive = gltf.header["meshes"][0]["primitives"][0]
+    primitive["indices"] = gltf.accessor(np.uint16([0, 1, 2]))
+    del gltf.header["accessors"][1]["bufferView"]
+    draco = {"bufferView": gltf.view(b"no Draco"), "attributes": {"POSITION": 0}}
+    primitive["extensions"] = {"KHR_draco_mesh_compression": draco}
+    refuse(gltf.glb(), "nothing can be drawn: mesh 'triangle'", SceneError)
+
+
+@pytest.mark.parametrize("installed", [True, False])
+def test_meshopt_that_cannot_be_decoded(gltf, monkeypatch, installed):
+    """The plain bytes are drawn, where the file has some; else the part is left out."""
+    if installed:
+        pytest.importorskip("meshopt", reason="the extra meshopt")
+        reason = r"bufferViews\[0\] is no readable meshopt data"
+    else:
+        monkeypatch.setitem(sys.modules, "meshopt", None)
+        reason = r"bufferViews\[0\] is compressed with meshopt, and the decoder is missing: .*pip install meshopt"
+    place = gltf.header["bufferViews"][gltf.view(b"no meshopt")]
+    meshopt = {**place, "byteStride": 12, "count": 3, "mode": "ATTRIBUTES"}
+    gltf.header["bufferViews"][0]["extensions"] = {"EXT_meshopt_compression": meshopt}
+    gltf.header["extensionsUsed"] = ["EXT_meshopt_compression"]
+    with pytest.warns(Notice, match=f"drawn from its plain arrays: {reason}"):
+        assert aolab.load(gltf.glb()).triangles == 1
+    gltf.header["bufferViews"][0]["buffer"] = 1
+    gltf.more_buffers = [{"byteLength": 36, "extensions": {"EXT_meshopt_compression": {"fallback": True}}}]
+    refuse(gltf.glb(), reason)
+
+
+def test_the_memory_of_meshopt_is_limited(gltf):
+    pytest.importorskip("meshopt", reason="the extra meshopt")
+    meshopt = {"buffer": 0, "byteLength": 4, "byteStride": 256, "count": 2**33, "mode": "ATTRIBUTES"}
+    gltf.header["bufferViews"][0]["extensions"] = {"KHR_meshopt_compression": meshopt}
+    refuse(gltf.glb(), r"bufferViews\[0\] is refused: it needs 2.2 TB of memory")
 
 
 def test_animation_parameters(gltf):

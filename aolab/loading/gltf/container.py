@@ -8,8 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from ...errors import FileError, shorten
+from ...input import TooLarge
 from ..folder import Folder
-from .schema import Gltf
+from ..parts import Notes
+from .meshopt import decompressed
+from .schema import BufferView, Gltf, Meshopt
 
 GLB_MAGIC, JSON_CHUNK, BINARY_CHUNK = b"glTF", b"JSON", b"BIN\0"
 
@@ -54,9 +57,10 @@ def _parse(data: bytes) -> Any:
 class Buffers:
     """The bytes of a file's buffers and images, each read when first asked for."""
 
-    def __init__(self, gltf: Gltf, binary: bytes, folder: Folder) -> None:
-        self._gltf, self._binary, self._folder = gltf, binary, folder
+    def __init__(self, gltf: Gltf, binary: bytes, folder: Folder, notes: Notes) -> None:
+        self._gltf, self._binary, self._folder, self._notes = gltf, binary, folder, notes
         self._read: dict[int, bytes] = {}
+        self._decompressed: dict[int, memoryview | None] = {}
 
     def buffer(self, index: int) -> bytes:
         """The bytes of `buffers[index]`. Raises `FileError` for a buffer that is missing, refused or too short."""
@@ -72,8 +76,20 @@ class Buffers:
         return self._read[index]
 
     def view(self, index: int) -> memoryview:
-        """The bytes of `bufferViews[index]`. Raises `FileError` where they reach beyond the buffer."""
+        """The bytes of `bufferViews[index]`, decompressed.
+
+        Raises `FileError` where they reach beyond the buffer, or cannot be decompressed.
+        """
         view = self._gltf.buffer_views[index]
+        if view.extensions.meshopt is not None:
+            if index not in self._decompressed:
+                self._decompressed[index] = self._by_meshopt(index, view.extensions.meshopt)
+            data = self._decompressed[index]
+            if data is not None:
+                return data
+        return self._slice(index, view)
+
+    def _slice(self, index: int, view: BufferView | Meshopt) -> memoryview:
         data, end = self.buffer(view.buffer), view.byte_offset + view.byte_length
         if end > len(data):
             raise FileError(
@@ -81,6 +97,18 @@ class Buffers:
                 f"which has {len(data)}"
             )
         return memoryview(data)[view.byte_offset : end]
+
+    def _by_meshopt(self, index: int, meshopt: Meshopt) -> memoryview | None:
+        """The decompressed bytes; None, with a note, where they cannot be had, and the file has the plain ones too."""
+        try:
+            return decompressed(self._slice(index, meshopt), meshopt, f"bufferViews[{index}]", self._folder.budget)
+        except TooLarge:
+            raise
+        except FileError as error:
+            if not self._gltf.buffers[self._gltf.buffer_views[index].buffer].has_data:
+                raise
+            self._notes.add("drawn from its plain arrays: ", str(error), separator="; ")
+            return None
 
 
 def resource(uri: str, folder: Folder) -> bytes:

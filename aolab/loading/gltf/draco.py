@@ -3,29 +3,46 @@
 import numpy as np
 
 from ...errors import SceneError
+from ...extras import EXTRAS, install_command
+from ...input import TooLarge
+from ..parts import Notes
 from .accessors import Accessors
-from .schema import Gltf, Primitive
+from .schema import Draco, Gltf, Primitive
+
+Arrays = tuple[dict[str, np.ndarray], np.ndarray]  # the attributes by name, and the indices
 
 
-def decoded(
-    gltf: Gltf, accessors: Accessors, primitive: Primitive, name: str
-) -> tuple[dict[str, np.ndarray], np.ndarray] | None:
-    """The attributes by name, and the indices; None where DracoPy is missing and the file has the plain arrays too.
+def decoded(gltf: Gltf, accessors: Accessors, primitive: Primitive, name: str, notes: Notes) -> Arrays | None:
+    """The arrays; None, with a note, where they cannot be decoded, and the file has the plain arrays too.
 
-    Raises `SceneError` for data that cannot be decoded, and where DracoPy is missing and the file has nothing else.
+    Raises `SceneError` where they cannot be decoded, and the file has nothing else.
     """
     draco = primitive.extensions.draco
     assert draco is not None
     try:
+        return _decoded(gltf, accessors, primitive, draco, name)
+    except SceneError as error:
+        plain = [primitive.attributes.get("POSITION"), primitive.indices]
+        plain = [gltf.accessors[index].buffer_view for index in plain if index is not None]
+        if not plain or None in plain:
+            raise
+        notes.add("drawn from its plain arrays: ", str(error), separator="; ")
+        return None
+
+
+def _decoded(gltf: Gltf, accessors: Accessors, primitive: Primitive, draco: Draco, name: str) -> Arrays:
+    try:
         import DracoPy
     except ImportError:
-        position = primitive.attributes.get("POSITION")
-        if position is not None and gltf.accessors[position].buffer_view is not None:
-            return None
-        raise SceneError(f"mesh '{name}' is compressed with Draco; pip install 'aolab[draco]' reads it") from None
+        package = EXTRAS["draco"].package
+        raise SceneError(
+            f"mesh '{name}' is compressed with Draco, and the decoder is missing: {install_command(package)}"
+        ) from None
     try:
         mesh = DracoPy.decode(accessors.view(draco.buffer_view))
         found = {attribute: mesh.get_attribute_by_unique_id(number) for attribute, number in draco.attributes.items()}
+    except TooLarge:
+        raise
     except Exception as error:  # the library's own exceptions, and those of its wrapper
         raise SceneError(f"mesh '{name}': bufferViews[{draco.buffer_view}] is no readable Draco mesh") from error
     attributes = {}

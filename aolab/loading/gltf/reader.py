@@ -34,7 +34,7 @@ class _Reader:
         self.gltf: Gltf = checked(json)
         self.nodes = nodes_in_scene(self.gltf)
         self.notes, self.left_out = Notes(), list[str]()
-        buffers = Buffers(self.gltf, binary, folder)
+        buffers = Buffers(self.gltf, binary, folder, self.notes)
         self.accessors = Accessors(self.gltf, buffers, folder.budget)
         self.materials = Materials(self.gltf, buffers, folder, self.notes)
         self.shapes = Shapes(self.gltf, self.accessors, self.notes)

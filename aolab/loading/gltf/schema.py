@@ -9,7 +9,16 @@ import json
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, ValidationInfo, model_validator
+from pydantic import (
+    AfterValidator,
+    AliasChoices,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidationInfo,
+    model_validator,
+)
 from pydantic.alias_generators import to_camel
 from pydantic_core import ErrorDetails, PydanticCustomError
 
@@ -23,11 +32,15 @@ READ = {
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_mesh_quantization",
     "KHR_draco_mesh_compression",
+    "KHR_meshopt_compression",
+    "EXT_meshopt_compression",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
     "KHR_node_visibility",
     "KHR_xmp_json_ld",
 }
+# extensions of surfaces: without them the shapes are right, so that a file that requires them is drawn
+SURFACES = ("KHR_materials_", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif")
 COLLECTIONS = ("accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials", "meshes",
                "nodes", "samplers", "scenes", "skins", "textures")  # fmt: skip
 
@@ -181,6 +194,27 @@ class Accessor(Object):
     max: Any = None
 
 
+class Meshopt(Object):
+    buffer: BufferIndex
+    byte_offset: Whole = 0
+    byte_length: Whole
+    byte_stride: Annotated[int, Field(ge=1, le=256)]
+    count: Whole
+    mode: Literal["ATTRIBUTES", "TRIANGLES", "INDICES"]
+    filter: Literal["NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL", "COLOR"] = "NONE"
+
+
+class MeshoptBuffer(Object):
+    fallback: bool = False
+
+
+MESHOPT = AliasChoices("KHR_meshopt_compression", "EXT_meshopt_compression")  # the same JSON
+
+
+class BufferViewExtensions(Extensions):
+    meshopt: Meshopt | None = Field(default=None, validation_alias=MESHOPT)
+
+
 class BufferView(Object):
     name: Any = None
     buffer: BufferIndex
@@ -188,12 +222,23 @@ class BufferView(Object):
     byte_length: Whole
     byte_stride: Annotated[int, Field(ge=1)] | None = None
     target: Any = None
+    extensions: BufferViewExtensions = BufferViewExtensions()
+
+
+class BufferExtensions(Extensions):
+    meshopt: MeshoptBuffer = Field(default=MeshoptBuffer(), validation_alias=MESHOPT)
 
 
 class Buffer(Object):
     name: Any = None
     uri: str | None = None
     byte_length: Whole
+    extensions: BufferExtensions = BufferExtensions()
+
+    @property
+    def has_data(self) -> bool:
+        """False for a buffer that stands only for the decompressed data of its views."""
+        return self.uri is not None or not self.extensions.meshopt.fallback
 
 
 class TextureTransform(Object):
@@ -412,7 +457,7 @@ def checked(data: Any) -> Gltf:
         more = f" (and {len(others)} more)" if others else ""
         raise FileError(f"is no valid glTF: {_told(first)}{more}") from None
     required = sorted({*gltf.extensions_required} - READ)
-    unknown = [name for name in required if not name.startswith("KHR_materials_")]
+    unknown = [name for name in required if not name.startswith(SURFACES)]
     if unknown:
         names = ", ".join(map(shorten, unknown))
         raise FileError(f"it requires {names}, which is not read; export it without (say, uncompressed)")

@@ -78,7 +78,7 @@ class Shapes:
         An attribute that cannot be read, and without which there is a shape, is left out with a note.
         """
         if primitive.extensions.draco is not None:
-            arrays = decoded(self._gltf, self._accessors, primitive, name)
+            arrays = decoded(self._gltf, self._accessors, primitive, name, self._notes)
             if arrays is not None:
                 return *arrays, TRIANGLES
         attributes = {}
