@@ -24,6 +24,9 @@ OPTIONS = {"-blendu": 1, "-blendv": 1, "-cc": 1, "-clamp": 1, "-imfchan": 1, "-m
            "-texres": 1, "-type": 1, "-o": 3, "-s": 3, "-t": 3}  # fmt: skip
 COLORS, MAPS = ("Kd", "Ke"), ("map_Kd", "map_d", "map_Ke")
 BUMPS = ("norm", "map_bump", "map_Bump", "bump", "disp")  # the first one that is stated is used
+READ = {*COLORS, *MAPS, *BUMPS, "d", "Tr"}
+# ambient light, highlights and roughness: a diffuse surface has none
+DIFFUSE_LACKS = {"Ka", "Ks", "Ns", "Ni", "illum", "sharpness", "Pr", "map_Ka", "map_Ks", "map_Ns", "map_Pr"}
 COLORED = 8  # a picture whose channels differ by more than this, of 255 and on average, holds normals, not heights
 
 
@@ -91,6 +94,9 @@ class Library:
 
     def _made(self, name: str, stated: dict[str, str]) -> Paint:
         shown = f"'{shorten(name)}'"
+        for key in stated.keys() - READ - DIFFUSE_LACKS:
+            if any(_floats(stated[key])) or not _floats(stated[key]):
+                self._notes.add("read, but not used: ", shorten(key))
         maps = {key: _map(stated[key]) for key in MAPS if key in stated}
         diffuse, opacity = maps.get("map_Kd"), maps.get("map_d")
         color, glow = (self._color(stated[key], shown, key) if key in stated else None for key in COLORS)

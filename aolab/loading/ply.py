@@ -26,6 +26,7 @@ TYPES = {
     **{"double": "f8", "float64": "f8", "int64": "i8", "uint64": "u8"},
 }
 ORDERS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+READ = ("vertex", "face", "tristrips")  # elements
 MAX_HEADER = 1 << 20  # bytes
 # the names that programs give to the same property
 XYZ, NORMAL = (("x", "y", "z"),), (("nx", "ny", "nz"), ("normal_x", "normal_y", "normal_z"))
@@ -65,6 +66,11 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
     order, elements, comments, start = _header(data)
     tables = _ascii(data[start:], elements) if order == "ascii" else _binary(data, start, elements, ORDERS[order])
     notes = Notes()
+    for element in elements:
+        if element.rows and element.name == "edge":
+            notes.add("left out, as they hold no triangles: ", "lines")
+        elif element.rows and element.name not in READ:
+            notes.add("read, but not used: ", f"element '{shorten(element.name)}'")
     vertex = tables.get("vertex", {})
     points = _columns(vertex, XYZ)
     if points is None:
@@ -85,7 +91,11 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
         faces = np.arange(len(corner)).reshape(-1, 3)
     material = Material(base_color=(1.0, 1.0, 1.0)) if colors is not None else Material()
     texture = _texture(comments, folder, notes)
-    if texture is not None and uv is not None:
+    if texture is not None and uv is None:
+        notes.add(
+            "its texture ", f"'{texture.name}'", " was left out: neither vertices nor faces have coordinates for it"
+        )
+    elif texture is not None:
         material = Material(base_color=(1.0, 1.0, 1.0), texture=texture)
     assert points is not None
     rgba = None if colors is None else linear_colors(colors, srgb=True)
@@ -322,10 +332,10 @@ def _strips(indices: np.ndarray, counts: np.ndarray) -> np.ndarray:
 
 def _texture(comments: list[str], folder: Folder, notes: Notes) -> Texture | None:
     """The texture that a comment names; None, with a note, where it cannot be read."""
-    for comment in comments:
-        keyword, _, name = comment.partition(" ")
-        if keyword != "TextureFile" or not name.strip():
-            continue
+    names = [comment.removeprefix("TextureFile ") for comment in comments if comment.startswith("TextureFile ")]
+    if len(names) > 1:
+        notes.add(f"all but the first of its {len(names)} textures were left out")
+    for name in names[:1]:
         shown = f"'{shorten(name.strip())}'"
         try:
             data = folder.get(name.strip())

@@ -46,7 +46,9 @@ def read_image(
         if image.mode == "F":
             raise FileError(f"{what} has floating-point numbers; only .exr and .hdr files may have them")
         try:
-            return _rgba(image)
+            converted = _rgba(image)
+            del image  # Pillow's copy in another mode: without it, decoding takes at most three times the array
+            return np.asarray(converted)
         except MemoryError:
             raise
         except Exception as error:
@@ -58,11 +60,10 @@ def _reason(error: Exception) -> str:
     return f": {error}" if isinstance(error, (OSError, SyntaxError)) and str(error) and not error.args[1:] else ""
 
 
-def _rgba(image: Image.Image) -> np.ndarray:
+def _rgba(image: Image.Image) -> Image.Image:
     if image.mode.startswith("I"):  # Pillow would clip 16-bit values to 255 instead of scaling them
-        grey = np.rint(np.clip(np.asarray(image), 0, 65535) / 257).astype(np.uint8)
-        return np.dstack([grey, grey, grey, np.full_like(grey, 255)])
-    return np.array(image.convert("RGBA"))
+        image = Image.fromarray(np.rint(np.clip(np.asarray(image), 0, 65535) / 257).astype(np.uint8))
+    return image if image.mode == "RGBA" else image.convert("RGBA")
 
 
 def linear_from_srgb(pixels: np.ndarray) -> np.ndarray:

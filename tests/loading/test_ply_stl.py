@@ -4,6 +4,7 @@ import struct
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import aolab
 from aolab.errors import FileError, Notice
@@ -50,7 +51,9 @@ def test_a_big_endian_ply_with_other_properties(tmp_path):
                 "property short quality", "element edge 1", "property int vertex1", "property int vertex2",
                 "element face 1", "property uchar flags", "property list uchar uint vertex_index"]  # fmt: skip
     data = rows.tobytes() + struct.pack(">2i", 0, 1) + struct.pack(">2B3I", 7, 3, 0, 1, 2)
-    mesh = only_mesh(write_ply(tmp_path / "a.ply", elements, data, form="binary_big_endian"))
+    path = write_ply(tmp_path / "a.ply", elements, data, form="binary_big_endian")
+    with pytest.warns(Notice, match="left out, as they hold no triangles: lines"):
+        mesh = only_mesh(path)
     np.testing.assert_allclose(np.ptp(mesh.vertices, axis=0), (2, 1, 0))
 
 
@@ -187,3 +190,16 @@ def test_a_text_without_its_end_is_told(tmp_path):
     (tmp_path / "a.stl").write_text(ascii_stl(end=""))
     with pytest.warns(Notice, match="does not end with 'endsolid', and may be truncated"):
         assert len(only_mesh(tmp_path / "a.stl").faces) == 2
+
+
+def test_parts_of_a_ply_that_are_not_drawn_are_told(tmp_path):
+    elements = [*VERTICES, "element material 1", "property uchar shine", *FACES]
+    elements[:0] = ["comment TextureFile a.png", "comment TextureFile b.png"]
+    Image.new("RGB", (2, 2)).save(tmp_path / "a.png")
+    path = write_ply(tmp_path / "a.ply", elements, POINTS.tobytes() + b"\7" + MIXED)
+    with pytest.warns(Notice) as caught:
+        only_mesh(path)
+    told = "\n".join(str(one.message) for one in caught)
+    assert "read, but not used: element 'material'" in told
+    assert "all but the first of its 2 textures were left out" in told
+    assert "its texture 'a.png' was left out: neither vertices nor faces have coordinates for it" in told
