@@ -6,12 +6,13 @@ from scipy.ndimage import binary_erosion
 from small_scenes import box, floor, of, quad
 
 import aolab
-from aolab import Camera, DirectionalLight, Environment, ParameterError, SpotLight
+from aolab import Camera, DirectionalLight, Environment, ParameterError, PointLight, SpotLight
 from aolab.modules import MODULES, find
+from aolab.modules.estimate import Estimate
 from aolab.modules.marched import Marched
 from aolab.modules.occluders import OCCLUDERS, Depth, Height, Product, Voxels
 from aolab.notebook.microscope.blocking import OCCLUDER_TWINS
-from aolab.notebook.microscope.twins import taking
+from aolab.notebook.microscope.twins import TWINS, taking
 
 CASES = [
     ("ssao", {}),
@@ -29,10 +30,13 @@ CASES = [
     ("ssdo", {"bounces": 1, "occluders": "layers"}),
     ("ssdo", {"bounces": 1, "occluders": "views"}),
     ("ssdo", {"bounces": 1, "occluders": Product(first=Depth(), second=Voxels(voxels=64))}),
+    ("ssdo", {"light_steps": 4, "fill": 2}),
+    ("ssdo", {"light_steps": 6, "occluders": "layers", "scale": 0.5}),
     ("ssbn", {}),
     ("ssbn", {"weighting": "uniform"}),
     ("s3ho", {}),
-    ("s3ho", {"strength": 3.0, "indirect": True}),
+    ("s3ho", {"strength": 3.0, "indirect": True, "occluders": "layers"}),
+    ("s3ho", {"indirect": True, "senders": "patches"}),
     ("s3ho", {"strength": 3.0, "estimator": "plain"}),
     ("rotated_ssao", {}),
     ("rotated_ssao", {"scale": 0.5, "occluders": "layers", "strength": 2.0}),
@@ -47,12 +51,20 @@ CASES = [
     ("rsm", {"gather": "low", "rsm_samples": 64}),
     ("ssao+rsm", {"scale": 0.5}),
     ("environment_vpl", {"environment_lights": 40}),
+    ("environment_vpl", {"fill": 4, "vpl_resolution": 16, "environment_lights": 20}),
     ("environment_vpl", {"fill": 4, "occluders": "voxels", "environment_lights": 20}),
+    ("ssbn", {"fill": 4, "shadow_resolution": 16}),
     ("instant_radiosity", {"fill": 3, "scale": 0.5, "bounce_lights": 40}),
+    ("instant_radiosity", {"near_field": True, "vpl_clamp": 2.0, "occluders": "layers"}),
     ("ssdo+instant_radiosity", {"bounce_lights": 10}),
 ]
 
 LAMPS = (DirectionalLight((-0.5, -1, -0.3)), SpotLight((2, 4, 3), (-0.5, -1, -0.6), (30, 30, 30), inner=20, outer=35))
+MORE_LAMPS = (
+    *LAMPS,
+    PointLight((-1.5, 2.5, 1.5), (5, 5, 8)),
+    DirectionalLight((1, -0.4, 0), (2, 1, 1), shadow=False),  # which samples on the screen alone can block
+)
 
 
 def pixels(frame, count: int) -> list[tuple[int, int]]:
@@ -68,12 +80,21 @@ def test_every_module_that_takes_samples_is_a_case(module):
     assert (module in {name for name, _ in CASES}) == (module != "none")
 
 
-@pytest.mark.filterwarnings("ignore::aolab.Notice")  # the floor is not closed
+@pytest.mark.parametrize(("module", "parameters"), CASES, ids=str)
+def test_every_pass_of_an_estimate_has_a_twin(module, parameters):
+    one = find(module, MODULES, **parameters)
+    estimates = [step for step in (one.estimate(), *one.lighting(), one.bounce()) if isinstance(step, Estimate)]
+    shaders = {str(step.shader) for estimate in estimates for step in estimate.passes}
+    assert shaders <= {*TWINS, "hao.outside.frag", "none.frag"}  # the first is in the twin of hao.frag
+
+
+@pytest.mark.filterwarnings("ignore::aolab.Notice")  # the floor is not closed, the point light has no reflective map
 @pytest.mark.parametrize(("module", "parameters"), CASES, ids=str)
 def test_the_replay_is_the_shader(lab, boxes, module, parameters):
-    scene = boxes.replace(environment=Environment.sky(), lights=LAMPS)
-    radius = {"radius": 1.0} if find(module, MODULES).has_radius() else {}
-    frame = lab.render(scene, module, seed=3, **radius, **parameters)
+    scene = boxes.replace(environment=Environment.sky(), lights=MORE_LAMPS)
+    settings = {"radius": 1.0} if find(module, MODULES).has_radius() else {}
+    settings |= {"shadow_resolution": 128, **parameters}  # small shadow maps are read back sooner
+    frame = lab.render(scene, module, seed=3, **settings)
     seen = [aolab.microscope(frame, pixel) for pixel in pixels(frame, 60)]
     assert max(one.difference for one in seen) <= 1e-3
     tested = [one.sets[0] for pixel in seen for one in pixel.passes if one.name not in ("rsm gather", "rsm complete")]

@@ -1,4 +1,4 @@
-"""The twins of shaders that march directions: ssao, ssdo, ssbn and s3ho, and SSDO's bounce."""
+"""The twins of shaders that march directions: ssao, ssdo, ssbn and s3ho."""
 
 from functools import lru_cache
 
@@ -61,8 +61,7 @@ def ssbn(seen: Inputs, texel: Texel, seed: int) -> Samples:
 def s3ho(seen: Inputs, texel: Texel, seed: int) -> Samples:
     """The twin of glsl/s3ho.moments.frag and s3ho.frag. `plain` subtracts the open directions from the whole cosine."""
     found = march(seen, texel, seed)
-    distance = np.take_along_axis(found.along, found.first, 1)[:, 0] * np.linalg.norm(found.kernel[:, :3], axis=1)
-    blocked = ~found.open / (1 + seen.number("strength") * distance)
+    blocked = blocked_share(seen, found)
     plain = seen.uniforms["plain"]
     share = blocked - 1 if plain else blocked
     whole = clamped_cosine(found.receiver.normal) if plain else np.zeros(MAX_BANDS**2)
@@ -74,34 +73,7 @@ def s3ho(seen: Inputs, texel: Texel, seed: int) -> Samples:
     )
 
 
-def ssdo_bounce(seen: Inputs, texel: Texel, seed: int) -> Samples:
-    """The twin of glsl/ssdo.bounce.frag: the blocked directions contribute, not the open ones."""
-    found = march(seen, texel, seed)
-    to_sender, normals, light = senders(found)
-    return found.samples({"bounce": form_factors(seen, found, to_sender, normals)[:, None] * light})
-
-
-def senders(found: March) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(N, 3) each: from the receiver to the first occluder of each direction, its normal, and the light that leaves it.
-
-    On an open direction, all are 0.
-    """
-    first = found.first[..., None]
-    arrays = (found.found.position, *found.found.surface())
-    place, normals, light = (np.take_along_axis(one, first, 1)[:, 0] for one in arrays)
-    blocked = ~found.open[:, None]
-    offset, normals, light = (np.where(blocked, one, 0) for one in (place - found.receiver.position, normals, light))
-    return offset, normals, light
-
-
-def form_factors(seen: Inputs, found: March, to_sender: np.ndarray, normals: np.ndarray) -> np.ndarray:
-    """(N,): `formFactor` of glsl/lib/senders.glsl."""
-    facing = -(normals * to_sender).sum(axis=1)
-    rising = np.maximum(to_sender @ found.receiver.normal, 0)
-    share = ((facing > 0) & (to_sender @ found.receiver.facet > 0)).astype(float)
-    if seen.uniforms["patches"]:
-        squared = np.maximum((to_sender**2).sum(axis=1), 1e-20)
-        clamped = np.maximum(squared, seen.number("distance_clamp") ** 2)
-        cosine = found.kernel[:, 2] / np.linalg.norm(found.kernel[:, :3], axis=1)
-        share *= seen.number("radius") ** 2 * rising * facing / (squared * clamped) / (2 * cosine)
-    return seen.number("bleeding") * np.pi / len(share) * share
+def blocked_share(seen: Inputs, found: March) -> np.ndarray:
+    """(N,): `blockedShare` of glsl/s3ho.blocked.glsl."""
+    distance = np.take_along_axis(found.along, found.first, 1)[:, 0] * np.linalg.norm(found.kernel[:, :3], axis=1)
+    return ~found.open / (1 + seen.number("strength") * distance)

@@ -8,9 +8,11 @@ from ...modules.estimate import Estimate
 from ...modules.marched import Marched
 from ...modules.passes import Pass
 from .ambient_transfer import ambient_transfer
+from .bounces import near_field, s3ho_senders, ssdo_bounce
 from .hao import hao
 from .inputs import Inputs
-from .marched import s3ho, ssao, ssbn, ssdo, ssdo_bounce, visibility
+from .lamps import fill, ssdo_lights
+from .marched import s3ho, ssao, ssbn, ssdo, visibility
 from .receiver import Texel
 from .rotated_ssao import rotated_ssao
 from .rsm import rsm, rsm_complete
@@ -26,6 +28,10 @@ TWINS: dict[str, Twin] = {
     "ssbn.frag": ssbn,
     "s3ho.moments.frag": s3ho,
     "s3ho.frag": s3ho,
+    "s3ho.senders.frag": s3ho_senders,
+    "near_field.frag": near_field,
+    "ssdo.lights.frag": ssdo_lights,
+    "pipeline/fill.frag": fill,
     "rotated_ssao.frag": rotated_ssao,
     "hao.frag": hao,
     "ambient_transfer.frag": ambient_transfer,
