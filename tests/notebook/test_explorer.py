@@ -118,6 +118,14 @@ def test_truth_and_error_are_shown_on_demand(explorer):
     assert explorer.bar
 
 
+@pytest.mark.parametrize("module", [name for name in MODULES if name not in ("none", "ssao")])
+def test_a_clicked_pixel_of_every_module_shows_its_samples(explorer, module):
+    reply = ask(explorer, module=module, parameters={}, pixel=[32, 40])
+    assert f"pixel (32, 40) of {module}\n" in reply["samples"]
+    assert "replay and shader differ by" in reply["samples"]
+    assert explorer.samples[:4] == b"\x89PNG"
+
+
 def test_a_clicked_pixel_shows_its_samples(explorer):
     assert "pixel (32, 40) of ssao" in ask(explorer, pixel=[32, 40])["samples"]
     assert explorer.samples[:4] == b"\x89PNG"

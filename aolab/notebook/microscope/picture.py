@@ -25,7 +25,8 @@ def draw(frame: Frame, pixel: tuple[int, int], passes: Sequence[Sampled]) -> Ima
     except ImportError as error:
         raise missing("pictures", error) from error
     count = len(passes)
-    figure = Figure((10, 4.6 * count), dpi=90, facecolor="#fafaf8")
+    height = 4.6 * count
+    figure = Figure((10, height), dpi=90, facecolor="#fafaf8")
     canvas = FigureCanvasAgg(figure)
     for number, one in enumerate(passes):
         _over_the_image(figure.add_subplot(count, 2, 2 * number + 1), frame, pixel, one)
@@ -33,9 +34,9 @@ def draw(frame: Frame, pixel: tuple[int, int], passes: Sequence[Sampled]) -> Ima
     figure.suptitle(
         f"{frame.info['module']}, pixel {pixel}; blue open, orange blocked, black: surfaces "
         "that block; thick: contributes most; stars: lights",
-        fontsize=9,
-    )
-    figure.tight_layout()
+        fontsize=9, y=1 - 0.08 / height, va="top",
+    )  # fmt: skip
+    figure.tight_layout(rect=(0, 0, 1, 1 - 0.3 / height))
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
