@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from ..errors import Error, FileError, shorten
-from ..input import TooLarge
+from ..input import Budget, TooLarge
 from ..pictures.images import linear_from_srgb, read_image
 from ..scene.environment import HALF_MAX
 from ..scene.mesh import HeightMap, Material, Texture, Wrap
@@ -38,6 +38,13 @@ class Paint:
     scale: np.ndarray = field(default_factory=lambda: np.ones(2))
     offset: np.ndarray = field(default_factory=lambda: np.zeros(2))
     is_default: bool = False
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether the surface has a colour and nothing else."""
+        one = self.material
+        maps = one.texture, one.emission_texture, one.normal_texture, one.height
+        return all(each is None for each in maps) and one.alpha == 1 and not any(one.emission)
 
 
 class Library:
@@ -102,7 +109,7 @@ class Library:
         color, glow = (self._color(stated[key], shown, key) if key in stated else None for key in COLORS)
         picture = None if diffuse is None else self._picture(diffuse.name)
         mask = None if opacity is None else self._picture(opacity.name)
-        pixels, alpha = _with_alpha(picture, mask), self._alpha(stated, shown)
+        pixels, alpha = _with_alpha(picture, mask, self._folder.budget), self._alpha(stated, shown)
         mode = "MASK" if pixels is not None and pixels[..., 3].min() < 255 else None
         used = diffuse or opacity or maps.get("map_Ke") or _Map("")
         shining = None if "map_Ke" not in maps else self._picture(maps["map_Ke"].name)
@@ -248,14 +255,19 @@ def _floats(text: str) -> list[float]:
     return numbers
 
 
-def _with_alpha(picture: np.ndarray | None, mask: np.ndarray | None) -> np.ndarray | None:
-    """The picture with the mask as its alpha: the mask's own alpha where it has one, else its brightness."""
+def _with_alpha(picture: np.ndarray | None, mask: np.ndarray | None, budget: Budget) -> np.ndarray | None:
+    """The picture with the mask as its alpha: the mask's own alpha where it has one, else its brightness.
+
+    Of different sizes the greater one holds, in width and in height: a mask in fewer texels would lose its holes.
+    """
     if mask is None or mask is picture:
         return picture
     alpha = mask[..., 3] if mask[..., 3].min() < 255 else mask[..., :3].mean(axis=2).round().astype(np.uint8)
     if picture is None:
         white = np.full_like(alpha, 255)
         return np.dstack([white, white, white, alpha])
-    if alpha.shape != picture.shape[:2]:
-        alpha = np.asarray(Image.fromarray(alpha).resize(picture.shape[1::-1], Image.Resampling.BILINEAR))
-    return np.dstack([picture[..., :3], alpha])
+    height, width = np.maximum(alpha.shape, picture.shape[:2]).tolist()
+    budget.take(4 * width * height, "a texture with its mask")
+    color = Image.fromarray(picture).convert("RGB").resize((width, height), Image.Resampling.BILINEAR)
+    holes = Image.fromarray(alpha).resize((width, height), Image.Resampling.BILINEAR)
+    return np.dstack([np.asarray(color), np.asarray(holes)])

@@ -30,6 +30,7 @@ FORMS = (
     (re.compile(r"(?:\s*+-?\d++//-?\d++)*+\s*+"), (0, 2)),
     (re.compile(r"(?:\s*+-?\d++/-?\d++/-?\d++)*+\s*+"), (0, 1, 2)),
 )
+MANY = 256  # materials; of more, those that differ in their colour alone become one part with colours of vertices
 LEAST = {"v": 3, "vt": 1, "vn": 3}  # numbers behind the keyword
 NAMES = ("vertex", "texture coordinate", "normal")
 
@@ -51,14 +52,27 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
     triangles, polygon = triangulate(points[corners[:, 0], :3], counts)
     distinct, of_name = np.unique(names, return_inverse=True)
     material = of_name[np.searchsorted(starts, faces.numbers, side="right") - 1][polygon]
-    order = np.argsort(material, kind="stable")
-    bounds = np.flatnonzero(np.diff(material[order], prepend=-1, append=-1))
+    paints = {number: library.paint(str(distinct[number])) for number in np.unique(material).tolist()}
+    plain = [number for number, paint in paints.items() if paint.is_plain]
+    group = np.arange(len(distinct))  # of materials that become one part
+    palette = np.ones((len(distinct), 3))
+    if len(plain) > MANY:
+        group[plain] = plain[0]
+        colored = points.shape[1] >= 6  # vertices with colours and without a material have no other colour
+        palette[plain] = [
+            (1, 1, 1) if paints[one].is_default and colored else paints[one].material.base_color for one in plain
+        ]
+    order = np.argsort(group[material], kind="stable")
+    bounds = np.flatnonzero(np.diff(group[material[order]], prepend=-1, append=-1))
     placed = []
     for start, stop in pairwise(bounds.tolist()):
-        name = str(distinct[material[order[start]]])
-        part = _part(
-            corners[triangles[order[start:stop]].reshape(-1)], points, coordinates, normals, library.paint(name)
-        )
+        chosen = order[start:stop]
+        first = int(material[chosen[0]])
+        name, tint = str(distinct[first]), None
+        if len(plain) > MANY and paints[first].is_plain:
+            name, tint = f"{len(plain)} colours", (np.repeat(material[chosen], 3), palette)
+        arrays = corners[triangles[chosen].reshape(-1)], points, coordinates, normals
+        part = _part(*arrays, paints[first], tint)
         part.name = path.stem if len(bounds) == 2 else f"{path.stem} {name or 'without material'}"
         placed.append(Placed(part, root, part.name))
     return Content(placed, notes=notes)
@@ -159,13 +173,25 @@ def _corner_by_corner(faces: Lines, stated: np.ndarray) -> np.ndarray:
     return given
 
 
-def _part(corners: np.ndarray, points: np.ndarray, coordinates: np.ndarray, normals: np.ndarray, paint: Paint) -> Part:
-    """The part of some triangles, whose corners are `corners` (3 F, 3): a vertex a distinct corner."""
-    if (corners[:, 1:] < 0).all():
+def _part(
+    corners: np.ndarray,
+    points: np.ndarray,
+    coordinates: np.ndarray,
+    normals: np.ndarray,
+    paint: Paint,
+    tint: tuple[np.ndarray, np.ndarray] | None = None,
+) -> Part:
+    """The part of some triangles, whose corners are `corners` (3 F, 3): a vertex a distinct corner.
+
+    `tint`: a number for each corner (3 F,), and the linear colours (n, 3) that they number, in place of the paint's.
+    """
+    row = None
+    if tint is None and (corners[:, 1:] < 0).all():
         point, number = np.unique(corners[:, 0], return_inverse=True)
         coordinate = normal = np.full(len(point), -1)
     else:
-        row, number = distinct_rows(corners.astype(np.int32))
+        columns = [corners] if tint is None else [corners, tint[0]]
+        row, number = distinct_rows(np.column_stack(columns).astype(np.int32))
         point, coordinate, normal = corners[row].T
     colors, uv, given = None, None, None
     if points.shape[1] >= 6:
@@ -175,4 +201,7 @@ def _part(corners: np.ndarray, points: np.ndarray, coordinates: np.ndarray, norm
     if (normal >= 0).any():
         given = np.where(normal[:, None] >= 0, normals[normal, :3], 0)
     material = Material(base_color=(1.0, 1.0, 1.0)) if colors is not None and paint.is_default else paint.material
+    if tint is not None:
+        colors = linear_colors(tint[1][tint[0][row]], srgb=False) * (1 if colors is None else colors)
+        material = Material(base_color=(1.0, 1.0, 1.0))
     return Part(points[point, :3], number.reshape(-1, 3), given, uv, colors, material)

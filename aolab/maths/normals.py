@@ -133,13 +133,21 @@ def _entries(corner_point: np.ndarray, normal: np.ndarray) -> np.ndarray:
 def _sum_over_pairs(point: np.ndarray, normal: np.ndarray, weighted: np.ndarray, cos_crease: float) -> np.ndarray:
     """For each entry, the sum of `weighted` over the entries at the same point within the crease angle.
 
-    Entries are sorted by point; the k-th round pairs each entry with the k-th after it, while points have that many.
+    Entries are sorted by point; the k-th round pairs each entry with the k-th after it, while points have that many. A
+    point with more than `MANY` entries is a product of matrices: a quarter of the time for fans of 1000 triangles.
     """
     order = np.argsort(point, kind="stable")
     point, normal, weighted = point[order], normal[order], weighted[order]
     total = weighted.copy()
-    index = np.arange(len(order))
-    for shift in range(1, len(order)):
+    start = np.flatnonzero(np.diff(point, prepend=-1))
+    count = np.diff(start, append=len(point))
+    for first, size in zip(start[count > MANY].tolist(), count[count > MANY].tolist(), strict=True):
+        here = slice(first, first + size)
+        close = normal[here] @ normal[here].T >= cos_crease
+        np.fill_diagonal(close, True)
+        total[here] = close.astype(np.float64) @ weighted[here]
+    index = np.flatnonzero(np.repeat(count <= MANY, count))
+    for shift in range(1, MANY):
         index = index[index + shift < len(order)]
         index = index[point[index] == point[index + shift]]
         if not len(index):

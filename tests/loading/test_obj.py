@@ -7,6 +7,8 @@ from PIL import Image
 
 import aolab
 from aolab.errors import FileError, Notice
+from aolab.loading.obj import MANY
+from aolab.pictures.images import linear_from_srgb
 
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 SQUARE = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
@@ -174,6 +176,19 @@ def test_alpha_of_a_texture_cuts(tmp_path, lab, mtl):
     assert frame.mask.mean() == pytest.approx(0.25, abs=0.04)
 
 
+@pytest.mark.parametrize(("mask", "color"), [((64, 64), (2, 2)), ((64, 4), (4, 64)), ((8, 8), (32, 32))])
+def test_a_mask_of_another_size_keeps_its_holes(tmp_path, mask, color):
+    """A comb of which one texel in four is drawn: in fewer texels, all would be a quarter, below the cutoff."""
+    alpha = np.zeros(mask[::-1], np.uint8)
+    alpha[:, ::4] = 255
+    Image.fromarray(alpha).save(tmp_path / "mask.png")
+    Image.new("RGB", color, (200, 100, 50)).save(tmp_path / "color.png")
+    pixels = painted(tmp_path, "map_Kd color.png\nmap_d mask.png\n").texture.pixels
+    assert pixels.shape == (max(mask[1], color[1]), max(mask[0], color[0]), 4)
+    assert (pixels[..., 3] >= 128).mean() == pytest.approx(0.25, abs=0.06)
+    assert (pixels[..., :3] == (200, 100, 50)).all()
+
+
 def test_a_picture_without_holes_is_not_cut(tmp_path):
     (tmp_path / "a.png").write_bytes(png((10, 20, 30, 255)))
     assert painted(tmp_path, "map_Kd a.png\n").alpha_cutoff is None
@@ -236,3 +251,29 @@ def test_triangles_of_vertices_that_are_not_finite_are_left_out(tmp_path):
     with pytest.warns(aolab.Notice, match=r"left out: 1 of 2 triangles of mesh '.*', whose vertices are not finite"):
         (mesh,) = meshes(write(tmp_path, text))
     assert len(mesh.faces) == 1
+
+
+@pytest.mark.parametrize("count", [MANY, MANY + 1])
+@pytest.mark.parametrize("tinted", [False, True])
+def test_many_materials_that_are_colours(tmp_path, count, tinted):
+    """More than `MANY` become one part with the same colours; a glowing one and a textured one stay parts."""
+    (tmp_path / "t.png").write_bytes(png((200, 100, 50, 255)))
+    levels = np.arange(count) / count
+    mtl = "".join(f"newmtl m{i}\nKd {level:.6f} 0.5 1\n" for i, level in enumerate(levels))
+    mtl += "newmtl glow\nKe 1 0 0\nnewmtl leaf\nmap_Kd t.png\n"
+    tint = " 1 0 1" if tinted else ""
+    text = f"mtllib model.mtl\nv 0 0 0{tint}\nv 1 0 0{tint}\nv 0 1 0{tint}\nvt 0 0\n"
+    names = [*(f"m{i}" for i in range(count)), "glow", "leaf"]
+    found = meshes(write(tmp_path, text + "".join(f"usemtl {name}\nf 1/1 2/1 3/1\n" for name in names), mtl))
+    assert len(found) == (count if count <= MANY else 1) + 2
+    special = [mesh for mesh in found if mesh.material.texture is not None or any(mesh.material.emission)]
+    assert len(special) == 2
+    colors = []
+    for mesh in found:
+        if mesh not in special:
+            rgb = np.ones((len(mesh.vertices), 3)) if mesh.colors is None else mesh.colors[:, :3]
+            colors += (rgb[mesh.faces[:, 0]] * mesh.material.base_color).tolist()
+    expected = linear_from_srgb(np.column_stack([levels, np.full(count, 0.5), np.ones(count)])) * (
+        [1, 0, 1] if tinted else 1
+    )
+    np.testing.assert_allclose(sorted(colors), sorted(expected.tolist()), atol=1e-5)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from aolab.maths.normals import smooth_normals
+from aolab.maths.normals import MANY, _sum_over_pairs, smooth_normals
 from aolab.scene.mesh import CREASE_DEGREES
 
 
@@ -98,3 +98,14 @@ def test_a_point_of_many_faces_averages_only_within_the_crease():
     vertices, faces, _, normals = smooth_normals(np.vstack([[0, 0, 0], rim]).astype(np.float32), np.array(faces), 40)
     towards = face_normals(vertices, faces)
     assert ((normals[faces[:, 0]] * towards).sum(axis=1) > 0.99).all()
+
+
+def test_sums_over_pairs_of_few_and_of_many_corners():
+    """Against each pair, at points where 2 to 300 corners of random normals meet."""
+    rng = np.random.default_rng(1)
+    point = rng.permutation(np.repeat(np.arange(6), [2, MANY - 1, MANY, MANY + 1, 100, 300]))
+    normal, weighted = rng.normal(size=(2, len(point), 3))
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    for cosine in (0.7, -2):  # -2: all pairs
+        near = (normal @ normal.T >= cosine) & (point[:, None] == point)
+        np.testing.assert_allclose(_sum_over_pairs(point, normal, weighted, cosine), near @ weighted, atol=1e-12)
