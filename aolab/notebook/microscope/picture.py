@@ -79,6 +79,10 @@ def _in_space(axes, samples: Samples) -> None:
         return np.stack([vectors[..., 0], -vectors[..., 2], vectors[..., 1]], axis=-1)
 
     chosen, widths = samples.foremost(MOST), _widths(samples)
+    if not len(chosen):
+        axes.set_axis_off()
+        axes.text2D(0.5, 0.5, "no samples contribute here", ha="center", va="center", transform=axes.transAxes)
+        return
     start = turned(samples.receiver)
     reach = float(samples.distances[chosen].max(initial=1e-6))
     for i in chosen:
