@@ -59,7 +59,9 @@ class Sampled:
             matrix = instance.world_from_local
             corners = instance.mesh.vertices[instance.mesh.faces].astype(np.float64) @ matrix[:3, :3].T + matrix[:3, 3]
             low, high = corners.min(axis=1) - margin, corners.max(axis=1) + margin
-            for i, point in enumerate(points):
+            inside = ((low.min(axis=0) <= points) & (high.max(axis=0) >= points)).all(axis=1)
+            for i in np.flatnonzero(inside):
+                point = points[i]
                 near = ((low <= point) & (high >= point)).all(axis=1)
                 if near.any():
                     on = trimesh.triangles.closest_point(corners[near], np.broadcast_to(point, (int(near.sum()), 3)))
