@@ -11,6 +11,7 @@ from aolab.modules import MODULES, find
 from aolab.modules.estimate import Estimate
 from aolab.modules.marched import Marched
 from aolab.modules.occluders import OCCLUDERS, Depth, Height, Product, Voxels
+from aolab.modules.occluders.base import OccluderKind
 from aolab.notebook.microscope.blocking import OCCLUDER_TWINS
 from aolab.notebook.microscope.twins import TWINS, taking
 
@@ -216,6 +217,16 @@ def test_wrong_pixels_and_frames_are_refused(lab, plane, boxes):
     frame.kept = None
     with pytest.raises(ParameterError, match="not rendered by a lab"):
         aolab.microscope(frame, (30, 40))
+
+
+def test_occluders_without_a_twin_are_refused(lab, boxes):
+    class Mine(OccluderKind):
+        name = "mine"
+        shader = Depth.shader
+
+    frame = lab.render(boxes, "ssao", occluders=Mine())
+    with pytest.raises(ParameterError, match="the occluders 'mine' are unknown; known: depth, layers"):
+        aolab.microscope(frame, pixels(frame, 1)[0])
 
 
 def test_a_relit_frame_is_replayed_under_its_light(lab, boxes):
