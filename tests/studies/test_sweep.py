@@ -70,6 +70,24 @@ def test_a_buffer_of_a_stored_reference_of_several_is_not_traced_again(monkeypat
     assert list(table["error"]) == [""]
 
 
+def test_times_are_those_of_a_frame_whose_maps_are_kept(tmp_path):
+    for number, scene in enumerate(("cornell", "boxes")):  # the maps of the other scene are not those of "boxes"
+        aolab.render(scene, "ssdo", size=(32, 18)).complete("image")
+        folder = tmp_path / str(number)
+        aolab.sweep(
+            "boxes", ["ssdo", "rsm"], size=(32, 18), seed=range(2), measures=[lit], reference=False, folder=folder
+        )
+        records = [json.loads(file.read_text()) for file in (folder / "records").glob("*.json")]
+        assert len(records) == 4
+        for record in records:
+            assert "g_buffer" in record["timings"]
+            assert not {"shadows", "reflective shadow maps"} & set(record["timings"])
+
+
+def lit(frame: aolab.Frame) -> float:
+    return float(frame.image.mean())
+
+
 def test_a_parameter_of_an_occluder_kind_belongs_to_the_cases_with_that_kind():
     options = {"occluders": ["depth", "layers"], "layers": [2, 3], "radius": 0.3, "reference": False}
     table = aolab.sweep("boxes", "ssao", size=(48, 32), **options)
