@@ -26,6 +26,7 @@ FORMATS = {
     ".off": ("OFF", "off"),
     ".3mf": ("3MF", "threemf"),
 }
+LFS_POINTER = b"version https://git-lfs.github.com/spec/"
 ANIMATED = "glTF"
 Z_UP = "3MF"
 # formats that people try, and the way to one that is read
@@ -69,6 +70,8 @@ def _content(path: Path, file_format: str, module: str, options: FileOptions) ->
     data = read_file(path, "the file", budget)
     if not data:
         raise FileError("is empty (0 bytes)")
+    if data.startswith(LFS_POINTER):
+        raise FileError("is a pointer of Git LFS in place of the file; 'git lfs pull' fetches the file")
     root = turned_up(options.up_axis or ("z" if file_format == Z_UP else "y"))
     read: Callable[..., Content] = import_module(f".{module}", __package__).read
     return read(data, path, Folder(path, budget), options, root)

@@ -75,7 +75,7 @@ def read(data: bytes, path: Path, folder: Folder, options: FileOptions, root: np
     points = _columns(vertex, XYZ)
     if points is None:
         raise FileError("has no vertices with x, y and z")
-    faces, corner_uv, face_colors = _faces(tables, points)
+    faces, corner_uv, face_colors = _faces(tables, points, notes)
     if not len(faces):
         return Content(left_out=[f"its {len(points)} vertices are points, and no triangle joins them"])
     normals, uv = _columns(vertex, NORMAL), _columns(vertex, UV)
@@ -283,7 +283,9 @@ def _colors(table: Columns) -> np.ndarray | None:
     return colors / (255.0 if len(colors) and colors.max() > 1 else 1.0)
 
 
-def _faces(tables: dict[str, Columns], points: np.ndarray) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
+def _faces(
+    tables: dict[str, Columns], points: np.ndarray, notes: Notes
+) -> tuple[np.ndarray, np.ndarray | None, np.ndarray | None]:
     """The triangles (F, 3), the texture coordinates of their corners (3 F, 2), and their colours (F, 3 or 4)."""
     face = tables.get("face", {})
     indices = next((face[name] for name in INDICES if isinstance(face.get(name), _List)), None)
@@ -301,6 +303,8 @@ def _faces(tables: dict[str, Columns], points: np.ndarray) -> tuple[np.ndarray, 
             uv = np.asarray(coordinates.values, np.float64).reshape(-1, 2)[corner.reshape(-1)]
     if isinstance(strip, _List) and len(strip.values):
         faces = np.concatenate([faces, _strips(_whole_numbers(strip.values), strip.counts)])
+        if uv is not None or colors is not None:
+            notes.add("colours and texture coordinates of faces were left out, as strips have none")
         uv = colors = None
     return faces, uv, colors
 

@@ -80,10 +80,11 @@ class Camera:
         return min(size) if self.fit else size[1]
 
     def clip_planes(self, bounds: np.ndarray) -> tuple[float, float]:
-        """Near and far distances that hold `bounds` (2, 3), where the camera does not give its own."""
+        """Near and far distances that hold `bounds` (2, 3), where the camera does not give narrower ones."""
         corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
         distances = -(corners @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
-        far = self.far or max(float(distances.max()) * 1.01, 1e-6)
+        reach = max(float(distances.max()) * 1.01, 1e-6)
+        far = min(self.far or reach, reach)  # beyond, there is nothing, and the depth buffer would lose precision
         # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m, and parallel rays lose nothing
         near = max(float(distances.min()) * 0.99, far * (1e-3 if self.ortho is None else 1e-6))
         near = self.near or min(near, far / 2)  # a far plane that is given stays

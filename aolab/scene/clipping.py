@@ -20,19 +20,22 @@ MOST_NAMES = 4  # of parts, in a message
 def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
     """The camera, with a nearer near plane than its own choice where a surface stands before that.
 
-    Near planes that are given stay. `Camera.clip_planes` takes a thousandth of the far plane's distance, which leaves
-    the depth buffer its precision: in a scene of 20 km it would cut away all within 20 m.
+    `Camera.clip_planes` takes a thousandth of the far plane's distance, which leaves the depth buffer its precision: in
+    a scene of 20 km it would cut away all within 20 m. A near plane that is given stays, unless there is no surface
+    between it and a farther one: at 1e-6 of the far plane's distance, surfaces behind each other would mix.
     """
-    if camera.near is not None or camera.ortho is not None:
+    if camera.ortho is not None:
         return camera
-    near, far = camera.clip_planes(scene.bounds)
-    if _distances(camera, scene.bounds).min() > near:
+    near, far = replace(camera, near=None).clip_planes(scene.bounds)
+    if camera.near is not None and camera.near >= near:
         return camera
-    slant = _slant(camera, size)
-    nearest = nearest_surface(scene, np.asarray(camera.eye), near * slant / MARGIN)
+    own, slant, nearest = camera if camera.near is None else replace(camera, near=near), _slant(camera, size), None
+    if _distances(camera, scene.bounds).min() <= near:
+        nearest = nearest_surface(scene, np.asarray(camera.eye), near * slant / MARGIN)
     if nearest is None:
-        return camera
-    return replace(camera, near=max(nearest * MARGIN / slant, far * LEAST))
+        return own
+    least = far * LEAST if camera.near is None else camera.near
+    return replace(camera, near=max(nearest * MARGIN / slant, least))
 
 
 def nearest_surface(scene: Scene, point: np.ndarray, limit: float) -> float | None:

@@ -275,6 +275,29 @@ def test_broken_json(gltf):
     refuse(path, "is not glTF: its JSON is no object")
 
 
+def test_a_later_version_that_the_file_needs(gltf):
+    gltf.header["asset"]["minVersion"] = "2.1"
+    refuse(gltf.glb(), r"needs a reader of glTF 2\.1 \(asset\.minVersion\); only 2\.0 is read")
+    gltf.header["asset"]["minVersion"] = "2.0"
+    assert aolab.load(gltf.glb()).triangles == 1
+
+
+def test_elements_that_overlap(gltf):
+    gltf.header["bufferViews"][0]["byteStride"] = 4
+    refuse(gltf.glb(), r"accessors\[0\]: its elements have 12 bytes, and bufferViews\[0\]\.byteStride is 4")
+
+
+def test_a_name_that_is_no_text(gltf):
+    gltf.header["nodes"][0]["name"] = 5
+    assert aolab.load(gltf.glb()).instances[0].name == "5"
+
+
+def test_a_pointer_of_git_lfs(tmp_path):
+    path = tmp_path / "a.glb"
+    path.write_text("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n")
+    refuse(path, "is a pointer of Git LFS in place of the file; 'git lfs pull' fetches the file")
+
+
 def test_a_required_extension_that_is_not_read(gltf):
     gltf.header["extensionsRequired"] = ["MPEG_media", "KHR_materials_unlit"]
     refuse(gltf.glb(), "requires MPEG_media, which is not read")

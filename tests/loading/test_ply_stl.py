@@ -203,3 +203,12 @@ def test_parts_of_a_ply_that_are_not_drawn_are_told(tmp_path):
     assert "read, but not used: element 'material'" in told
     assert "all but the first of its 2 textures were left out" in told
     assert "its texture 'a.png' was left out: neither vertices nor faces have coordinates for it" in told
+
+
+def test_strips_beside_coloured_faces(tmp_path):
+    elements = [*VERTICES, *FACES, *(f"property uchar {name}" for name in ("red", "green", "blue"))]
+    elements += ["element tristrips 1", "property list int int vertex_indices"]
+    elements[4] = "element face 1"
+    data = POINTS.tobytes() + struct.pack("<B3i3B", 3, 0, 1, 2, 255, 0, 0) + struct.pack("<4i", 3, 0, 2, 4)
+    with pytest.warns(Notice, match="colours and texture coordinates of faces were left out, as strips have none"):
+        assert len(only_mesh(write_ply(tmp_path / "a.ply", elements, data)).faces) == 2

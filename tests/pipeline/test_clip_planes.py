@@ -1,6 +1,7 @@
 """Clip planes: the camera's own choice cuts nothing away, planes that are given are told where they do."""
 
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -43,7 +44,28 @@ def test_the_near_plane_lies_before_the_nearest_surface():
     assert 0.5 < near < 1  # the floor is one unit below the eye
     assert unclipped(Camera((0, 50, 0), (0, 0, -1)), cube(floor(100)), SIZE).near is None  # its own choice suffices
     given = Camera((0, 1, 3.5), (0, 0.5, 0), near=2.0)
-    assert unclipped(given, scene, SIZE) is given
+    assert unclipped(given, scene, SIZE) == given
+
+
+@pytest.mark.parametrize("ortho", [None, 2.0])
+@pytest.mark.parametrize(
+    "planes", [{"near": 1e-7}, {"far": 1e9}, {"near": 1e-5, "far": 1e12}, {"near": 1e-7, "far": 20}]
+)
+def test_planes_far_beyond_what_is_in_view_change_nothing(lab, planes, ortho):
+    """As planes of a depth buffer of 24 bits they would mix surfaces, or cut all away."""
+    camera = replace(AHEAD, ortho=ortho)
+    right = lab.render(cube(floor(10)), "ssao", size=SIZE, camera=camera)
+    frame = lab.render(cube(floor(10)), "ssao", size=SIZE, camera=replace(camera, **planes))
+    assert frame.notes == []
+    np.testing.assert_allclose(frame["viewZ"], right["viewZ"], rtol=1e-5)
+    np.testing.assert_allclose(frame["visibility"], right["visibility"], atol=0.02)
+
+
+def test_a_surface_behind_a_near_plane_that_is_given_stays():
+    """At a hundredth of the distance that the camera would choose."""
+    scene = cube(floor(1000), quad((-1, 0.5, 3.48), (2, 0, 0), (0, 1, 0)))
+    assert unclipped(replace(AHEAD, near=1e-4), scene, SIZE).near == pytest.approx(0.016, abs=0.004)
+    assert unclipped(replace(AHEAD, near=0.01), scene, SIZE).near == pytest.approx(0.016, abs=0.004)
 
 
 def test_a_notice_names_the_parts_that_the_near_plane_cuts(lab):

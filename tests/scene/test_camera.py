@@ -52,7 +52,8 @@ def test_a_scene_behind_the_eye_has_valid_clip_planes():
 
 
 def test_given_clip_planes_are_kept():
-    assert Camera((0, 0, 5), (0, 0, 0), near=0.5, far=7).clip_planes(UNIT) == (0.5, 7)
+    assert Camera((0, 0, 5), (0, 0, 0), near=0.5, far=5).clip_planes(UNIT) == (0.5, 5)
+    assert Camera((0, 0, 5), (0, 0, 0), near=0.5, far=1e12).clip_planes(UNIT)[1] == pytest.approx(6, rel=0.02)
 
 
 @pytest.mark.parametrize("size", [(100, 100), (300, 100), (100, 300)])

@@ -91,6 +91,8 @@ class Accessors:
         column = rows * dtype.itemsize if columns == 1 else -(-rows * dtype.itemsize // 4) * 4
         size = (columns - 1) * column + rows * dtype.itemsize
         stride = self._gltf.buffer_views[view].byte_stride or columns * column
+        if stride < size:
+            raise FileError(f"{where}: its elements have {size} bytes, and bufferViews[{view}].byteStride is {stride}")
         end = offset + (count - 1) * stride + size if count else 0
         if end > len(data):
             raise FileError(

@@ -13,6 +13,7 @@ from pydantic import (
     AfterValidator,
     AliasChoices,
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     ValidationError,
@@ -72,7 +73,8 @@ SceneIndex = Annotated[int, _index_of("scenes")]
 SkinIndex = Annotated[int, _index_of("skins")]
 TextureIndex = Annotated[int, _index_of("textures")]
 Whole = Annotated[int, Field(ge=0)]
-Name = Annotated[str, AfterValidator(shorten)]
+Name = Annotated[str, BeforeValidator(lambda name: name if isinstance(name, str) else json.dumps(name)),
+                 AfterValidator(shorten)]  # fmt: skip
 Two = Annotated[list[float], Field(min_length=2, max_length=2)]
 Three = Annotated[list[float], Field(min_length=3, max_length=3)]
 Four = Annotated[list[float], Field(min_length=4, max_length=4)]
@@ -456,6 +458,9 @@ def checked(data: Any) -> Gltf:
         first, *others = error.errors(include_url=False)
         more = f" (and {len(others)} more)" if others else ""
         raise FileError(f"is no valid glTF: {_told(first)}{more}") from None
+    least = gltf.asset.min_version
+    if least not in (None, "2.0", "2"):
+        raise FileError(f"it needs a reader of glTF {shorten(least)} (asset.minVersion); only 2.0 is read")
     required = sorted({*gltf.extensions_required} - READ)
     unknown = [name for name in required if not name.startswith(SURFACES)]
     if unknown:
