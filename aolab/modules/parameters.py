@@ -206,5 +206,7 @@ def _type_name(annotation: Any) -> str:
     if args := [a for a in get_args(annotation) if a is not type(None)]:
         if hasattr(annotation, "__metadata__"):
             return _type_name(args[0])
+        if get_origin(annotation) is tuple:
+            return f"({', '.join(_type_name(a) for a in args)})"
         return " or ".join(_type_name(a) for a in args)
     return getattr(annotation, "__name__", str(annotation))

@@ -182,6 +182,11 @@ def test_a_choice_is_described(choice):
         assert MODULES["ssao"].model_json_schema()["properties"][field]["with"] == {choice.axis: choice.name}
 
 
+def test_a_box_is_described_as_its_corners():
+    corner = "(float, float, float)"
+    assert describe(MODULES["ssao"], "voxel_region")["type"] == f"str or ({corner}, {corner})"
+
+
 @pytest.mark.parametrize(("name", "field"), PARAMETERS)
 def test_every_parameter_is_stated_whole(name, field):
     module = MODULES[name]
