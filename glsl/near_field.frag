@@ -1,7 +1,8 @@
 // The light of near surfaces that the clamp of virtual lights takes away, bounced on the screen (SSDO, Ritschel, Grosch and
-// Seidel 2009, section 5, Fig. 12). A virtual light's geometry term G = cosθ cosθ_p / d² is clamped to c = 1/clamp². The rest
-// of the integral has the weight (G - c)/G, and the first occluder on each direction is its sender:
-//   E(P) = π/N Σ L_i max(0, 1 - c/G_i),   cosine-distributed directions.
+// Seidel 2009, section 5, Fig. 12). A virtual light's geometry term G = cosθ cosθ_p / d² is clamped to c = a + b L, where L is
+// the luminance that its surface sends. The rest of the integral has the weight (G - c)/G, and the first occluder on each
+// direction is its sender:
+//   E(P) = π/N Σ L_i max(0, 1 - c_i/G_i),   cosine-distributed directions.
 //
 // Inputs:  viewZ, viewNormal; sender, the lamps' light that each pixel reflects (RGB radiance).
 // Output:  bounce: rgb the irradiance from the senders.
@@ -9,7 +10,9 @@
 #include "lib/march.glsl"
 #include "lib/constants.glsl"
 
-uniform float vpl_clamp;   // scene units
+uniform vec2 vpl_bound;   // (a, b) of the virtual lights' clamp, see aolab/pipeline/virtual_lights.py
+
+const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);   // of linear sRGB (ITU-R BT.709)
 
 out vec4 bounce;
 
@@ -27,7 +30,9 @@ void main() {
         if (facing <= 0.0 || rising <= 0.0) continue;
         float squared = dot(toSender, toSender);
         float geometry = facing * rising / max(squared * squared, 1e-20);
-        sum += occluderRadiance(first) * max(1.0 - 1.0 / (geometry * vpl_clamp * vpl_clamp), 0.0);
+        vec3 radiance = occluderRadiance(first);
+        float bound = vpl_bound.x + vpl_bound.y * dot(radiance, LUMINANCE);
+        sum += radiance * max(1.0 - bound / geometry, 0.0);
     }
     bounce = vec4(PI / float(directions) * sum, 1.0);
 }

@@ -3,39 +3,38 @@
 // surface that sends Φ/π cosθ_p. The bias of every shadow map can be filled on the screen (lib/fill.glsl).
 //
 // Inputs:  viewZ, viewNormal; light_rows: three texels a light: the direction to a far light, or the position (xyz), world
-//          space; the normal (xyz) and whether it is far (w); ∫ L dω of a far one, or Φ (rgb). Its shadow tile is its number.
-// Output:  irradiance: rgb Σ over the batch: far, ∫ L dω cosθ; near, Φ/π min(cosθ cosθ_p / d², 1/clamp²), times the shadow.
+//          space, and the bound of its geometry term (w); the normal (xyz) and whether it is far (w); ∫ L dω of a far one, or
+//          Φ (rgb). Its shadow tile is its number.
+// Output:  irradiance: rgb Σ over the batch: far, ∫ L dω cosθ; near, Φ/π min(cosθ cosθ_p / d², bound), times the shadow.
 
 #include "lib/space.glsl"
 #include "lib/fill.glsl"
 
 const int batch;             // lights a pass: software drivers end a shader's loops after 65,535 steps in all
-const bool clamped;          // by vpl_clamp
 
 uniform sampler2D light_rows;
 uniform int first_light;
 uniform int light_count;
-uniform float vpl_clamp;     // scene units
 uniform vec4 ray_from_pixel;
 
 out vec4 irradiance;
 
 // The irradiance without shadow; `toLight`: unit, world space, `away` its distance.
 vec3 arriving(int i, vec3 worldPos, vec3 worldNormal, out vec3 toLight, out float away) {
-    vec3 place = texelFetch(light_rows, ivec2(0, i), 0).xyz;
+    vec4 place = texelFetch(light_rows, ivec2(0, i), 0);
     vec4 normal = texelFetch(light_rows, ivec2(1, i), 0);
     vec3 sent = texelFetch(light_rows, ivec2(2, i), 0).rgb;
     if (normal.w > 0.5) {
-        toLight = place;
+        toLight = place.xyz;
         away = 3.0e38;
-        return sent * max(dot(worldNormal, place), 0.0);
+        return sent * max(dot(worldNormal, toLight), 0.0);
     }
-    vec3 way = place - worldPos;
+    vec3 way = place.xyz - worldPos;
     float squared = max(dot(way, way), 1e-20);
     away = sqrt(squared);
     toLight = way / away;
     float geometry = max(dot(worldNormal, toLight), 0.0) * max(-dot(normal.xyz, toLight), 0.0) / squared;
-    return sent / PI * (clamped ? min(geometry, 1.0 / (vpl_clamp * vpl_clamp)) : geometry);
+    return sent / PI * min(geometry, place.w);
 }
 
 void main() {

@@ -7,7 +7,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field
 
 from ..scene.scene import Scene
-from .base import AUTO, Module, auto_radius
+from .base import AUTO, Module
 from .buffers import REFLECTIVE, VIRTUAL
 from .estimate import Estimate
 from .marched import Marched
@@ -28,13 +28,15 @@ class VirtualLights(Pass):
     """A lighting step: the irradiance of `count` virtual lights through shadow maps of `resolution` pixels a side.
 
     `source`: the environment, in cells of equal energy, or the reflective shadow maps, whose pixels are drawn by their
-    flux. `slope_bias` as of the shadow maps of lamps. The lights are added up in batches.
+    flux. `slope_bias` as of the shadow maps of lamps. `clamp`: the geometry term is at most 1/clamp²; None bounds
+    each light by the radiosity of its surface. The lights are added up in batches.
     """
 
     source: Literal["environment", "reflective"]
     count: int
     resolution: int
     slope_bias: float
+    clamp: float | None = None
 
     @property
     def samples(self) -> frozenset[str]:
@@ -42,24 +44,27 @@ class VirtualLights(Pass):
         return frozenset(REFLECTIVE if self.source == "reflective" else ())
 
 
-def _lights(module: Any, source: Literal["environment", "reflective"], count: int) -> VirtualLights:
+def _lights(
+    module: Any, source: Literal["environment", "reflective"], count: int, clamp: float | None = None
+) -> VirtualLights:
     return VirtualLights(
         f"{source} lights",
         "virtual_lights.frag",
         {f"{source}_irradiance": VIRTUAL[f"{source}_irradiance"].format},
-        {"clamped": source == "reflective"},
         writes={"irradiance": f"{source}_irradiance"},
         source=source,
         count=count,
         resolution=module.vpl_resolution,
         slope_bias=0.0 if module.shadow_bias == "none" else module.shadow_bias / 2,
+        clamp=clamp,
     )
 
 
 Clamp = Annotated[
     Annotated[float, Field(gt=0)] | Literal["auto"],
     Field(
-        description="A virtual light's geometry term is at most 1/clamp²; auto is the radius.",
+        description="A virtual light's geometry term is at most 1/clamp²; auto: its irradiance is at most 1/4 of its "
+        "surface's radiosity.",
         json_schema_extra={"unit": "scene units"},
     ),
 ]
@@ -102,7 +107,8 @@ def with_instant_radiosity(base: type[Module]) -> type[Module]:
 
         def lighting(self) -> Sequence[Pass | Estimate]:
             before = super().lighting()
-            lights = _lights(self, "reflective", self.bounce_lights)
+            clamp = None if self.vpl_clamp == AUTO else self.vpl_clamp
+            lights = _lights(self, "reflective", self.bounce_lights, clamp)
             return [*before, lights, bounce_of("reflective_irradiance", before, shaded=False)]
 
         def bounce(self) -> Estimate | None:
@@ -111,12 +117,6 @@ def with_instant_radiosity(base: type[Module]) -> type[Module]:
             bounce = {"bounce": "RGBA32F"}
             # of the lamps' light alone: the virtual lights carry no other
             return Estimate([Pass("near field", "near_field.frag", bounce, reads={"sender": "direct"})], bounce)
-
-        def resolved(self, scene: Scene) -> Module:
-            module = super().resolved(scene)
-            if module.vpl_clamp != AUTO:
-                return module
-            return module.replace(vpl_clamp=getattr(module, "radius", None) or auto_radius(scene))
 
     return WithInstantRadiosity
 

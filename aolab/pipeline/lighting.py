@@ -63,7 +63,8 @@ class Lights:
             "view_environment_sh": np.ascontiguousarray(radiance.T, np.float32).tobytes(),
         }
         reflected = [self.reflective.bindings] if self.reflective else []
-        return [self.lamps, Bindings("the environment", self.tables, environment), *reflected]
+        clamps = [maps.clamp for maps in self.virtual.values()]
+        return [self.lamps, Bindings("the environment", self.tables, environment), *reflected, *clamps]
 
 
 @dataclass(frozen=True, eq=False)

@@ -22,6 +22,8 @@ from .state import SurfaceState
 
 BATCH = 32  # lights a pass
 STEPS_A_LIGHT = 5  # of a shader's loops: the light's, and the four comparisons of its shadow
+# a light's irradiance is at most this share of its surface's radiosity; docs/modules/instant_radiosity.md compares four
+MOST_OF_RADIOSITY = 1 / 4
 # half the opening of a virtual light's shadow map: a diffuse surface sends sin² 75° = 93 % of its light into it; the
 # rest, which grazes, has no shadow
 TAN_OPENING = float(np.tan(np.radians(75)))
@@ -29,12 +31,16 @@ TAN_OPENING = float(np.tan(np.radians(75)))
 
 @dataclass(frozen=True)
 class VirtualLightMaps:
-    """The rows of the lights, (3, count) texels, and their shadow maps: see glsl/virtual_lights.frag."""
+    """The rows of the lights, (3, count) texels, and their shadow maps: see glsl/virtual_lights.frag.
+
+    `clamp`, of lights on surfaces, has `vpl_bound` for glsl/near_field.frag.
+    """
 
     rows: moderngl.Texture
     atlas: moderngl.Texture
     table: moderngl.Texture
     count: int
+    clamp: Bindings
 
 
 def draw_virtual_lights(
@@ -46,26 +52,43 @@ def draw_virtual_lights(
         assert scene.environment is not None  # Scene fills it in
         towards, sent = environment_lights(scene.environment, step.count)
         rows = np.stack([towards, np.zeros_like(towards), sent], axis=1)
-        far = np.ones(len(rows))
+        far, bounds, clamp = np.ones(len(rows)), np.zeros(len(rows)), {}
     else:
         assert reflective is not None  # the step's `samples` have it drawn
-        rows = _drawn(reflective.buffers, step.count, seed)
-        far = np.zeros(len(rows))
+        rows, radiosity = _drawn(reflective.buffers, step.count, seed)
+        constant, by_radiance = _bound(step, rows)
+        far, bounds = np.zeros(len(rows)), constant + by_radiance * radiosity / np.pi
+        clamp = {"vpl_bound": (constant, by_radiance)}
     padded = np.zeros((max(1, len(rows)), 3, 4), np.float32)  # GL has no empty texture
-    padded[: len(rows), :, :3], padded[: len(rows), 1, 3] = rows, far
+    padded[: len(rows), :, :3], padded[: len(rows), :2, 3] = rows, np.stack([bounds, far], axis=1)
     projections = [_projection(scene, row, is_far) for row, is_far in zip(rows, far, strict=True)]
     atlas, table = draw_tiles(rasterizer, projections, step.resolution if projections else 1, step.slope_bias)
-    return VirtualLightMaps(make((3, len(padded)), "RGBA32F", padded.tobytes()), atlas, table, len(rows))
+    texels = make((3, len(padded)), "RGBA32F", padded.tobytes())
+    return VirtualLightMaps(texels, atlas, table, len(rows), Bindings("the clamp of virtual lights", uniforms=clamp))
 
 
-def _drawn(maps: Buffers, count: int, seed: int) -> np.ndarray:
-    """(n, 3, 3): position, normal and flux of up to `count` pixel lights. Each cell of equal flux has a light.
+def _bound(step: VirtualLights, rows: np.ndarray) -> tuple[float, float]:
+    """(a, b): the geometry term of a light is at most a + b L, where its surface sends the luminance L.
 
-    A cell's pixel is drawn by its flux, and has the whole cell's in its own colour.
+    A clamp in scene units is the constant 1/clamp². Without a clamp, `MOST_OF_RADIOSITY` sets b: a light's irradiance
+    is Φ/π times its geometry term, and the radiosity of its surface is πL.
     """
-    position, normal, flux = (read(maps[name])[..., :3] for name in ("rsm_position", "rsm_normal", "rsm_flux"))
+    if step.clamp is not None:
+        return 1 / step.clamp**2, 0.0
+    flux = (rows[:, 2] @ LUMINANCE).mean() if len(rows) else 1.0
+    return 0.0, float(MOST_OF_RADIOSITY * np.pi**2 / flux)
+
+
+def _drawn(maps: Buffers, count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
+    """Up to `count` pixel lights: position, normal and flux (n, 3, 3), and the radiosity (n,) of their surfaces.
+
+    Each cell of equal flux has a light. A cell's pixel is drawn by its flux, and has the whole cell's in its own
+    colour. The radiosity is a luminance.
+    """
+    places, normal, flux = (read(maps[name]) for name in ("rsm_position", "rsm_normal", "rsm_flux"))
+    position, area, normal, flux = places[..., :3], places[..., 3], normal[..., :3], flux[..., :3]
     energy = (flux @ LUMINANCE).astype(np.float64)
-    random, rows = np.random.default_rng(seed), []
+    random, rows, radiosity = np.random.default_rng(seed), [], []
     for top, bottom, left, right in equal_energy_cells(energy, count):
         part = np.s_[top:bottom, left:right]
         running = energy[part].ravel().cumsum()
@@ -73,7 +96,8 @@ def _drawn(maps: Buffers, count: int, seed: int) -> np.ndarray:
         color = flux[part].reshape(-1, 3)[number]
         sent = color / (color @ LUMINANCE) * running[-1]
         rows.append([position[part].reshape(-1, 3)[number], normal[part].reshape(-1, 3)[number], sent])
-    return np.reshape(np.asarray(rows, float), (-1, 3, 3))
+        radiosity.append(energy[part].ravel()[number] / area[part].ravel()[number])
+    return np.reshape(np.asarray(rows, float), (-1, 3, 3)), np.array(radiosity)
 
 
 def _projection(scene: Scene, row: np.ndarray, is_far: float) -> tuple[np.ndarray, np.ndarray]:

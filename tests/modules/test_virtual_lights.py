@@ -76,16 +76,17 @@ def test_a_module_keeps_its_bounce_under_virtual_lights(lab, boxes):
 
 
 @pytest.mark.slow
-def test_the_near_field_brings_the_clamped_light_back(lab, room):
+@pytest.mark.parametrize(("clamp", "count", "most"), [(1.0, 256, 0.25), ("auto", 64, 0.31)])
+def test_the_near_field_brings_the_clamped_light_back(lab, room, clamp, count, most):
     """Against rays, near the corners where floor and walls meet and everywhere."""
     truth = aolab.reference(room, size=(96, 72), buffers=("indirect",), rays=512)["indirect"]
-    settings = {"bounce_lights": 256, "fill": 8, "size": (96, 72), "vpl_clamp": 1.0, "radius": 1.0}
+    settings = {"bounce_lights": count, "fill": 8, "size": (96, 72), "vpl_clamp": clamp, "radius": 1.0}
     settings |= {"directions": 16, "steps": 8}
     frames = {on: lab.render(room, "instant_radiosity", near_field=on, **settings) for on in (False, True)}
     mask = frames[True].mask
     error = {on: relative(frame["indirect"], truth, mask) for on, frame in frames.items()}
     lost = {on: (truth - frame["indirect"])[mask].mean() for on, frame in frames.items()}
-    assert error[True] < 0.9 * error[False] < 0.25
+    assert error[True] < 0.9 * error[False] < most
     assert 0 < lost[True] < 0.8 * lost[False]
 
 
@@ -105,6 +106,51 @@ def test_without_a_clamp_the_bounce_has_the_flux_of_the_maps(lab):
     # Φ = ρ E A = 0.5 π 0.04, up to the squares of small angles; E = Φ/π / h²; white reflects E/π
     expected = 0.5 * np.pi * 0.04 / np.pi / 9 / np.pi
     np.testing.assert_allclose(frame["indirect"][over][:, 0], expected, rtol=0.05)
+
+
+PATCH = 1.0, 4.0  # x from 0, z around 0
+RADIOSITY = 0.8 * np.pi
+BOUNDS = {"auto": np.pi / 4 / 4, 2.0: 1 / 2.0**2}  # of the geometry term: a quarter of the radiosity is π / (4 area)
+
+
+@pytest.fixture(scope="module")
+def patch() -> Scene:
+    """A white wall in the plane x = 0 at the side of a patch of the floor, which the sun lights from straight above."""
+    width, length = PATCH
+    lit = small_scenes.quad((0, 0, length / 2), (width, 0, 0), (0, 0, -length), Material((0.8, 0.8, 0.8)), "patch")
+    wall = small_scenes.quad((0, 0, 3), (0, 0, -6), (0, 4, 0), name="wall")
+    sun = DirectionalLight((0, -1, 0), (np.pi, np.pi, np.pi), shadow=False)
+    return small_scenes.of(lit, wall, camera=Camera((4, 3, 0), (0.3, 0.5, 0)), lights=(sun,), sky=DARK)
+
+
+@pytest.mark.parametrize("clamp", BOUNDS)
+def test_near_a_single_light_its_irradiance_is_the_bound(lab, patch, clamp):
+    """It is Φ/π times the bound; `auto`: a quarter of the patch's radiosity. Farther away the clamp changes nothing."""
+    settings = {"bounce_lights": 1, "size": SIZE, "rsm_resolution": 512}
+    free, clamped = (
+        lab.render(patch, "instant_radiosity", vpl_clamp=c, **settings)["indirect"][..., 0] for c in (1e-3, clamp)
+    )
+    most = RADIOSITY * np.prod(PATCH) / np.pi * BOUNDS[clamp] / np.pi  # white reflects E/π
+    np.testing.assert_allclose(clamped, np.minimum(free, most), rtol=0.02, atol=1e-6)
+    assert (free > 1.1 * most).sum() > 10
+
+
+@pytest.mark.parametrize("clamp", BOUNDS)
+def test_the_near_field_is_the_light_beyond_the_bound(lab, patch, clamp):
+    """At the wall: the radiance of the patch, integrated over its area with the weight max(G - bound, 0)."""
+    settings = {"bounce_lights": 1, "size": (160, 120), "rsm_resolution": 512, "vpl_clamp": clamp, "near_field": True}
+    settings |= {"radius": 1.2, "falloff": 0, "directions": 32, "steps": 32, "accumulate": 2, "filter": "none"}
+    frame = lab.render(patch, "instant_radiosity", **settings)
+    position = small_scenes.world_positions(frame, patch.camera)
+    near = (abs(position[..., 0]) < 0.01) & (abs(position[..., 1] - 0.5) < 0.1) & (abs(position[..., 2]) < 0.1)
+    width, length = PATCH
+    x, z = np.meshgrid((np.arange(200) + 0.5) / 200 * width, ((np.arange(400) + 0.5) / 400 - 0.5) * length)
+    height = position[near][:, 1, None, None]
+    geometry = height * x / (x**2 + (z - position[near][:, 2, None, None]) ** 2 + height**2) ** 2
+    cell = width * length / x.size
+    expected = RADIOSITY / np.pi * np.maximum(geometry - BOUNDS[clamp], 0).sum(axis=(1, 2)) * cell
+    assert near.sum() > 5
+    np.testing.assert_allclose(frame["bounce"][near][:, 0].mean(), expected.mean(), rtol=0.08)
 
 
 def test_the_clamp_bounds_the_light_of_each_virtual_light(lab, room):

@@ -57,6 +57,7 @@ CASES = [
     ("ssbn", {"fill": 4, "shadow_resolution": 16}),
     ("instant_radiosity", {"fill": 3, "scale": 0.5, "bounce_lights": 40}),
     ("instant_radiosity", {"near_field": True, "vpl_clamp": 2.0, "occluders": "layers"}),
+    ("instant_radiosity", {"near_field": True, "bounce_lights": 8}),
     ("ssdo+instant_radiosity", {"bounce_lights": 10}),
 ]
 

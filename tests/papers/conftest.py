@@ -99,13 +99,15 @@ EDITS = {
     "no gap": (("lib/fill.glsl", "FILL_THICKNESS * reach", "0.0 * reach"),),
     "only the near half of the gap": (("lib/segment.glsl", "/ float(samples))", "/ float(8 * samples))"),),
     "no slope in the gap": (("lib/shadow_tiles.glsl", "sqrt(1.0 - cosine * cosine) / cosine", "0.02"),),
-    "lights from one side": (("virtual_lights.frag", "toLight = place;", "toLight = normalize(vec3(1.0, 0.5, 0.0));"),),
+    "lights from one side": (
+        ("virtual_lights.frag", "toLight = place.xyz;", "toLight = normalize(vec3(1.0, 0.5, 0.0));"),
+    ),
     "virtual lights that send to all sides": (
         ("virtual_lights.frag", "max(-dot(normal.xyz, toLight), 0.0)", "1.0"),
         ("virtual_lights.frag", "light *= tileShadow(i, worldPos);", ""),
     ),
-    "no near field": (("near_field.frag", "sum += occluderRadiance", "sum += 0.0 * occluderRadiance"),),
-    "all of the near field": (("near_field.frag", "max(1.0 - 1.0 / (geometry * vpl_clamp * vpl_clamp), 0.0)", "1.0"),),
+    "no near field": (("near_field.frag", "sum += radiance", "sum += 0.0 * radiance"),),
+    "all of the near field": (("near_field.frag", "max(1.0 - bound / geometry, 0.0)", "1.0"),),
     "half of the near field": (("near_field.frag", "PI / float(directions)", "0.3 * PI / float(directions)"),),
     # reflective shadow maps and the rotated kernel
     "a map without the lamp's cone": (("rsm.map.frag", "* arriving * section", "* arriving * arriving * section"),),

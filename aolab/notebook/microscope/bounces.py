@@ -3,6 +3,7 @@
 import numpy as np
 
 from ...maths.harmonics import clamped_cosine
+from ...scene.environment_lights import LUMINANCE
 from .inputs import Inputs
 from .march import March, march
 from .marched import blocked_share
@@ -25,7 +26,8 @@ def near_field(seen: Inputs, texel: Texel, seed: int) -> Samples:
     geometry = np.where((facing > 0) & (rising > 0), facing * rising, 0) / np.maximum(
         (to_sender**2).sum(axis=1) ** 2, 1e-20
     )
-    share = np.maximum(1 - 1 / np.maximum(geometry * seen.number("vpl_clamp") ** 2, 1e-20), 0)
+    constant, by_light = seen.vector("vpl_bound")
+    share = np.maximum(1 - (constant + by_light * (light @ LUMINANCE)) / np.maximum(geometry, 1e-20), 0)
     return found.samples({"bounce": np.pi / len(share) * share[:, None] * light})
 
 

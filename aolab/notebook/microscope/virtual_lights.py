@@ -54,6 +54,4 @@ def _arriving(
     away = np.sqrt(squared)
     to_light = ways / away[:, None]
     geometry = np.maximum(to_light @ normal, 0) * np.maximum(-(facing * to_light).sum(axis=1), 0) / squared
-    if seen.uniforms["clamped"]:
-        geometry = np.minimum(geometry, 1 / seen.number("vpl_clamp") ** 2)
-    return to_light, away, sent * (geometry / F(np.pi))[:, None]
+    return to_light, away, sent * (np.minimum(geometry, rows[:, 0, 3]) / F(np.pi))[:, None]
