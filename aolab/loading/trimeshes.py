@@ -39,7 +39,10 @@ def scene_from_trimesh(source: Any) -> Scene:
             parts[id(geometry)] = _part(geometry, str(name), textures, content)
         content.placed.append(Placed(parts[id(geometry)], matrix, str(node)))
     if source.has_camera:
-        content.camera = camera_at(source.camera_transform, fov=float(source.camera.fov[1]))
+        try:
+            content.camera = camera_at(source.camera_transform, fov=float(source.camera.fov[1]))
+        except (ValueError, SceneError) as error:  # ValueError: the graph has no place for it
+            content.notes.add(f"its camera cannot be used ({error}); another one frames the scene")
     return scene_of(content)
 
 
@@ -86,7 +89,16 @@ def _material(source: Any, textures: dict[int, Texture], mesh: str, content: Con
     rgba = linear_colors(np.array([[255] * 4 if factor is None else factor], np.uint8), srgb=not is_pbr)[0]
     mode, cutoff = (source.alphaMode, source.alphaCutoff) if is_pbr else (None, None)
     drawn = alpha_drawn(mode, cutoff, f"'{source.name}'", content.notes)
-    return Material(tuple(rgba[:3].tolist()), texture, float(rgba[3]), name=str(source.name or ""), **drawn)
+    glow = getattr(source, "emissiveFactor", None)
+    red, green, blue = (0.0, 0.0, 0.0) if glow is None else np.clip(np.asarray(glow, float)[:3], 0, None).tolist()
+    return Material(
+        tuple(rgba[:3].tolist()),
+        texture,
+        float(rgba[3]),
+        name=str(source.name or ""),
+        emission=(red, green, blue),
+        **drawn,
+    )
 
 
 def _texture(image: Any, name: str) -> Texture:

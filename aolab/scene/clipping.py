@@ -82,7 +82,7 @@ def reason_of_nothing(scene: Scene, view: View) -> str:
     seen = [instance for instance, out in zip(scene.instances, np.any(outside, axis=1), strict=True) if not out]
     if not seen:
         return "the camera looks past the scene; Camera.framing(scene.bounds) sees it"
-    reasons = list(dict.fromkeys(_hidden_by_material(seen)))
+    reasons = [*filter(None, [reason_of_cut(scene, view)]), *dict.fromkeys(_hidden_by_material(seen))]
     return "; ".join(reasons) if reasons else "the surfaces in view are smaller than a pixel, or cut by a clip plane"
 
 

@@ -1,4 +1,4 @@
-"""Damaged files of 16 kinds, by seed. Run as a program, `fuzzed.py KIND FIRST LAST`, it loads them and prints faults.
+"""Damaged files of 18 kinds, by seed. Run as a program, `fuzzed.py KIND FIRST LAST`, it loads them and prints faults.
 
 A fault is an exception that is not aolab's, an error in Python's words, or one that no reader foresaw.
 """
@@ -249,12 +249,58 @@ def gltf_files(rng: random.Random) -> dict[str, bytes]:
     return {"a.gltf": damaged.encode(), "a.bin": data}
 
 
+def compressed(rng: random.Random, by: str) -> dict[str, bytes]:
+    """A ball whose compressed bytes are damaged; `by` is "draco" or "meshopt"."""
+    import trimesh
+
+    ball = trimesh.creation.icosphere(1)
+    corners, faces = ball.vertices.astype("<f4"), ball.faces.astype("<u4")
+    primitive: dict[str, Any] = {"attributes": {"POSITION": 0}}
+    accessors: list[dict[str, Any]] = [{"componentType": 5126, "count": len(corners), "type": "VEC3"}]
+    if by == "draco":
+        import DracoPy
+
+        streams = [DracoPy.encode(corners, faces, quantization_bits=12)]
+        attributes = {"POSITION": DracoPy.decode(streams[0]).attributes[0]["unique_id"]}
+        primitive["extensions"] = {"KHR_draco_mesh_compression": {"bufferView": 0, "attributes": attributes}}
+        extensions: list[dict[str, Any]] = [{}]
+    else:
+        import meshopt
+
+        rows = meshopt.encode_filter_exp(corners, 15)
+        streams = [meshopt.encode_gltf_buffer(rows, "ATTRIBUTES"), meshopt.encode_gltf_buffer(faces, "TRIANGLES")]
+        extensions = [
+            {"byteStride": 12, "count": len(corners), "mode": "ATTRIBUTES", "filter": "EXPONENTIAL"},
+            {"byteStride": 4, "count": faces.size, "mode": "TRIANGLES"},
+        ]
+        accessors[0]["bufferView"] = 0
+        accessors.append({"bufferView": 1, "componentType": 5125, "count": faces.size, "type": "SCALAR"})
+        primitive["indices"] = 1
+    damaged = bytes_damaged(b"".join(streams), rng)
+    starts = np.cumsum([0, *map(len, streams)]).tolist()
+    views = [
+        {"buffer": 0, "byteOffset": start, "byteLength": len(one)} for start, one in zip(starts, streams, strict=False)
+    ]
+    for view, extension in zip(views, extensions, strict=True):
+        if extension:
+            view["extensions"] = {"EXT_meshopt_compression": {**view, **extension}}
+            view["byteLength"] = extension["byteStride"] * extension["count"]
+    header = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [primitive]}], "accessors": accessors, "bufferViews": views,
+        "buffers": [{"byteLength": len(damaged)}],
+    }  # fmt: skip
+    return {"a.glb": glb(header, damaged)}
+
+
 # by kind: the files of a seed, the first of which is loaded
 KINDS: dict[str, Callable[[random.Random], dict[str, bytes]]] = {
     "glb": lambda rng: {"a.glb": bytes_damaged(glb(*gltf()), rng)},
     "glb json": lambda rng: {"a.glb": glb(json_damaged(gltf()[0], rng), gltf()[1])},
     "glb binary": lambda rng: {"a.glb": glb(gltf()[0], bytes_damaged(gltf()[1], rng))},
     "gltf": gltf_files,
+    "glb draco": lambda rng: compressed(rng, "draco"),
+    "glb meshopt": lambda rng: compressed(rng, "meshopt"),
     "obj": lambda rng: {"a.obj": words_damaged(OBJ, rng), "m.mtl": MTL, "t.png": picture("PNG")},
     "mtl": lambda rng: {"a.obj": OBJ, "m.mtl": words_damaged(MTL, rng), "t.png": picture("PNG")},
     "ascii ply": lambda rng: {"a.ply": words_damaged(PLY, rng), "t.png": picture("PNG")},

@@ -623,3 +623,14 @@ def test_the_memory_of_a_file_is_limited(gltf):
     gltf.header["accessors"][0].update(count=2_000_000_000)
     del gltf.header["accessors"][0]["bufferView"]
     refuse(gltf.glb(), r"accessors\[0\] is refused: it needs 24 GB of memory")
+
+
+def test_an_animation_of_something_else_is_told(gltf):
+    """KHR_animation_pointer moves any property; without its name in extensionsUsed it would pass in silence."""
+    times, values = gltf.accessor(np.float32([0, 1])), gltf.accessor(np.float32([0, 1]))
+    gltf.header["animations"] = [{
+        "channels": [{"sampler": 0, "target": {"path": "pointer"}}],
+        "samplers": [{"input": times, "output": values}],
+    }]  # fmt: skip
+    with pytest.warns(Notice, match="read, but not used: animations of pointer"):
+        aolab.load(gltf.glb(), time=0.5)

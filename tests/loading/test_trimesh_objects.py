@@ -132,3 +132,20 @@ def test_a_singular_transform_names_the_node():
     scene.add_geometry(trimesh.creation.box(), node_name="flat", transform=np.diag([1, 0, 1, 1]))
     with pytest.raises(SceneError, match="instance 'flat': its transform is singular"):
         aolab.load(scene)
+
+
+def test_a_camera_without_a_place_is_told():
+    """A scene that is made with a camera keeps it out of its graph until a transform is set."""
+    scene = trimesh.Scene([trimesh.creation.box()], camera=trimesh.scene.Camera(fov=(40, 30)))
+    with pytest.warns(Notice, match="its camera cannot be used"):
+        assert aolab.load(scene).triangles == 12
+    scene.camera_transform = np.eye(4)
+    assert aolab.load(scene).camera.fov == 30
+
+
+def test_emission_of_a_trimesh():
+    assert aolab.load(textured(PBRMaterial(emissiveFactor=[1, 0.5, 0]))).instances[0].mesh.material.emission == (
+        1,
+        0.5,
+        0,
+    )

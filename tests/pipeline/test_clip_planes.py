@@ -154,3 +154,11 @@ def test_large_models_are_searched_by_chunks():
     scene = small_scenes.of(aolab.Mesh(ball.vertices, ball.faces), wide, camera=camera)
     near = unclipped(camera, scene, SIZE).near
     assert near == pytest.approx(0.9 * 0.1 / np.sqrt(1 + (1 + 16 / 9) * np.tan(np.radians(22.5)) ** 2), rel=0.02)
+
+
+def test_an_empty_picture_names_a_plane_that_cut(lab):
+    """The near plane lies within the cube, whose other side is seen from behind."""
+    single = small_scenes.of(box((-0.5, 0, -0.5), (0.5, 1, 0.5), aolab.Material(double_sided=False), name="cube"))
+    (note,) = notes_of(lab, single, camera=Camera((0, 0.5, 3.5), (0, 0.5, 0), fov=10, near=3.2))
+    assert "the camera's near plane, near = 3.2, cuts away parts of 'cube'" in note
+    assert "is not seen from behind" in note

@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike
 
 from ...errors import FileError, ParameterError, suggestion
 from .accessors import Accessors
-from .schema import Animation, AnimationSampler, Gltf
+from .schema import ANIMATED, Animation, AnimationSampler, Gltf
 
 Pose = np.ndarray  # (4, 4) float64
 KEYS = {"translation": 3, "rotation": 4, "scale": 3}
@@ -103,7 +103,7 @@ def moved_at(
     moved: dict[int, dict[str, np.ndarray]] = {}
     for channel in chosen.channels:
         path, node = channel.target.path, channel.target.node
-        if node is None or path not in (*KEYS, "weights"):
+        if node is None or path not in ANIMATED:
             continue
         value = _sampled(accessors, chosen.samplers[channel.sampler], path, time or 0.0)
         if value is not None:

@@ -42,6 +42,7 @@ READ = {
 }
 # extensions of surfaces: without them the shapes are right, so that a file that requires them is drawn
 SURFACES = ("KHR_materials_", "KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif")
+ANIMATED = {"translation", "rotation", "scale", "weights"}
 COLLECTIONS = ("accessors", "animations", "bufferViews", "buffers", "cameras", "images", "materials", "meshes",
                "nodes", "samplers", "scenes", "skins", "textures")  # fmt: skip
 
@@ -511,6 +512,8 @@ def unread(gltf: Gltf) -> list[str]:
     found = {*gltf.extensions_used, *gltf.extensions_required, *_undeclared(gltf, "")} - READ
     if any(material.pbr_metallic_roughness.metallic_factor > 0 for material in gltf.materials):
         found.add("materials.metallicFactor")
+    paths = {channel.target.path for animation in gltf.animations for channel in animation.channels}
+    found |= {f"animations of {shorten(path)}" for path in paths - ANIMATED}
     return sorted(map(shorten, found))
 
 
