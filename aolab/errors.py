@@ -2,7 +2,7 @@
 
 import difflib
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 LONG_WORD = 1000  # characters: longer ones, as of names in a damaged file, are shortened in messages
 
@@ -58,24 +58,36 @@ def _with_short_words(message: str) -> str:
     return re.sub(rf"\S{{{LONG_WORD},}}", lambda word: shorten(word[0]), message)
 
 
-def suggestion(name: str, known: Iterable[str]) -> str:
+def suggestion(name: object, known: Iterable[str]) -> str:
     """The end of a message about an unknown `name`: the nearest known name, if any, and the list of known names.
 
-    Of more than `LISTED` names the nearest are listed. Case does not count, and the same letters in another order are
-    nearest: `ssoa` is `ssao` rather than `ssdo`.
+    Of more than `LISTED` names the nearest are listed.
     """
     names = sorted(known)
-    written = name.lower()
+    shown = names if len(names) <= LISTED else sorted(sorted(names, key=_nearness(name))[-LISTED // 4 :])
+    more = f", and {len(names) - len(shown)} more" if len(shown) < len(names) else ""
+    listed = f"{', '.join(shown)}{more}" if names else "none"
+    if (one := nearest(name, names)) is not None:
+        return f"; did you mean '{one}'? (known: {listed})"
+    return f"; known: {listed}"
+
+
+def nearest(name: object, known: Iterable[str]) -> str | None:
+    """The known name that `name` is probably meant to be; None if no name is near.
+
+    Case does not count, and the same letters in another order are nearest: `ssoa` is `ssao` rather than `ssdo`.
+    """
+    nearness = _nearness(name)
+    found = max(sorted(known), key=nearness, default="")
+    return found if found and nearness(found) >= 0.6 else None
+
+
+def _nearness(name: object) -> Callable[[str], float]:
+    written = str(name).lower()
     matcher = difflib.SequenceMatcher(b=written)
 
     def nearness(candidate: str) -> float:
         matcher.set_seq1(candidate.lower())
         return matcher.ratio() + (sorted(candidate.lower()) == sorted(written))
 
-    shown = names if len(names) <= LISTED else sorted(sorted(names, key=nearness)[-LISTED // 4 :])
-    more = f", and {len(names) - len(shown)} more" if len(shown) < len(names) else ""
-    listed = f"{', '.join(shown)}{more}" if names else "none"
-    nearest = max(names, key=nearness, default="")
-    if names and nearness(nearest) >= 0.6:
-        return f"; did you mean '{nearest}'? (known: {listed})"
-    return f"; known: {listed}"
+    return nearness

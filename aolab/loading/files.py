@@ -113,13 +113,14 @@ def _existing_file(source: str) -> Path:
         reason = getattr(error, "strerror", None) or "it holds a zero character"
         raise FileError(f"'{shorten(source, 200)}' is no file name: {reason}") from error
     if is_directory:
-        models = sorted(child.name for child in path.iterdir() if child.suffix.lower() in FORMATS)
-        raise FileError(f"{path} is a directory; give a file in it ({', '.join(models) or 'it holds no model'})")
+        models = ", ".join(_models(path)) or "it holds no model"
+        raise FileError(f"{path} is a directory; give a file in it ({models})")
     if not exists:
         if not path.parent.is_dir():
             raise FileError(f"no file {path}: there is no folder {path.parent}")
-        models = [child.name for child in path.parent.iterdir() if child.suffix.lower() in FORMATS]
-        raise FileError(f"no file {path}{suggestion(path.name, models)}")
+        here, shipped = _models(path.parent), _models(paths.scenes())
+        told = suggestion(path.name, here) if here else f"; the folder {path.parent.resolve()} holds no model"
+        raise FileError(f"no file {path}{told}; models that come with aolab: {', '.join(shipped)}")
     suffix = path.suffix.lower()
     if suffix not in FORMATS:
         way = f"; {OTHERS[suffix]}" if suffix in OTHERS else ""
@@ -127,6 +128,10 @@ def _existing_file(source: str) -> Path:
     if not path.is_file():
         raise FileError(f"{path} is {kind(mode)}; give a regular file")
     return path
+
+
+def _models(folder: Path) -> list[str]:
+    return sorted(child.name for child in folder.iterdir() if child.suffix.lower() in FORMATS)
 
 
 @contextmanager

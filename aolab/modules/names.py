@@ -59,6 +59,10 @@ def check_parameters(module: str, values: Iterable[str], attributes: Iterable[st
 
 def check_outputs(module: str, outputs: Mapping[str, str]) -> None:
     """Raise `ParameterError` for an output whose name the pipeline fills, or whose format breaks the name's meaning."""
+    if not isinstance(outputs, Mapping):
+        raise ParameterError(
+            f"{module}: outputs = {outputs!r:.80} maps no buffers to formats; write outputs = {{'visibility': 'R16F'}}"
+        )
     owners = dict.fromkeys(SURFACES | ON_DEMAND, "the surfaces") | dict.fromkeys(LIT, "the lighting")
     owners |= dict.fromkeys(REFLECTIVE, "the reflective shadow maps")
     for name, format in outputs.items():

@@ -2,6 +2,7 @@
 
 import json
 import re
+import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin
@@ -33,7 +34,9 @@ class _Declared(type(BaseModel)):
 
     def __new__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any) -> type:
         try:
-            return super().__new__(cls, name, bases, namespace, **options)
+            with warnings.catch_warnings():  # a subclass refuses such names by an error
+                warnings.filterwarnings("ignore", ".*shadows an attribute", UserWarning)
+                return super().__new__(cls, name, bases, namespace, **options)
         except PydanticUserError as error:
             raise ParameterError(_declaration(name, namespace, error)) from None
 
@@ -155,8 +158,12 @@ def _explain(parameters: type[Parameters], error: ValidationError, values: dict[
             messages[name] = unknown(parameters, name)
         elif name:
             described = describe(parameters, name)
+            # a default of the wrong type or out of its range is none of the given values
+            given = (
+                "has no value" if item["type"] == "missing" else f"= {values.get(name, item['input'])!r} is not valid"
+            )
             messages[name] = (
-                f"{label(parameters)}: {name} = {values.get(name)!r} is not valid: {described['type']}"
+                f"{label(parameters)}: {name} {given}: {described['type']}"
                 + (f", {described['range']}" if described["range"] else "")
                 + (f", in {described['unit']}" if described["unit"] else "")
             )
@@ -169,6 +176,14 @@ def is_word(parameters: type[Parameters], name: str) -> bool:
     """Whether all values of a parameter are words; words never reach a shader."""
     annotation = parameters.model_fields[name].annotation
     return get_origin(annotation) is Literal and all(isinstance(value, str) for value in get_args(annotation))
+
+
+def words(parameters: type[Parameters], name: str) -> list[str]:
+    """The words that are values of a parameter: all of them, or those besides numbers, as auto."""
+    about = parameters.model_json_schema()["properties"][name]
+    branches = [about, *about.get("anyOf", [])]
+    values = [value for branch in branches for value in (*branch.get("enum", ()), branch.get("const"))]
+    return [value for value in values if isinstance(value, str)]
 
 
 def unknown(parameters: type[Parameters], name: str) -> str:

@@ -1,44 +1,50 @@
 """Tab completion in IPython and Jupyter: names of modules, scenes and buffers, and the parameters of a module.
 
 >>> aolab.render("boxes", "ssao", <Tab>        # the parameters of ssao
+>>> aolab.render("boxes", filter="<Tab>        # the values of a parameter
 >>> aolab.load("<Tab>                          # the scenes
+>>> frame.show("<Tab>                          # the buffers of this frame
 """
 
 import re
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, get_args
 
 if TYPE_CHECKING:
     from IPython.core.completer import CompletionContext
     from IPython.core.interactiveshell import InteractiveShell
 
+# a function of the package, and its arguments up to the cursor; `(?<!...)`: `frame.show`, and `aolab.show` as well
 CALL = re.compile(
-    r"\b(render|load|explore|reference|explain|compare_modules|sweep|animate)\s*\(((?:[^()]|\([^()]*\))*)$"
+    r"(?:\b(\w+)\s*\.\s*)?\b(render|load|explore|reference|explain|compare_modules|compare|relighting_error|sweep"
+    r"|animate|bake|show)\s*\(((?:[^()]|\([^()]*\))*)$"
 )
 TEXT = re.compile(r"""(["'])([^"']*)\1""")
-SCENE_FIRST = ("render", "explore", "reference", "explain", "compare_modules", "sweep", "animate")
+KEYWORD = re.compile(r"""(\w+)\s*=\s*[\[(]?[\s,]*["'][^"']*$""")  # of the string in which the text ends
+SCENE_FIRST = (
+    "render", "explore", "reference", "explain", "compare_modules", "relighting_error", "sweep", "animate", "load",
+    "bake",
+)  # fmt: skip
+BUFFERS_OF_FRAMES = ("show", "compare")
 
 
-def candidates(before: str) -> list[str]:
+def candidates(before: str, variables: Mapping[str, Any] | None = None) -> list[str]:
     """The names that may follow the text `before` the cursor, which ends within a call; without the begun word.
 
-    In a string: the scenes for the first argument, the modules for another. Elsewhere: `NAME=` for each parameter of
-    the module that the call names, or of all modules if it names none.
+    In a string: scenes, modules, buffers or the values of a parameter, by the argument. Elsewhere: `NAME=` for each
+    parameter of the module that the call names, or of all modules if it names none; for `load`, those of the scene.
+    `variables` holds the frames whose buffers are offered.
     """
     found = CALL.search(before)
     if found is None:
         return []
-    function, inside = found.groups()
+    owner, function, inside = found.groups()
     rest = TEXT.sub("", inside)
     if '"' in rest or "'" in rest:  # the cursor is in a string
-        argument = rest.count(",")
-        return _scenes() if function == "load" or argument == 0 else _modules()
-    if function in ("load", "reference"):
-        return []
-    from ..modules import MODULES
-
-    named = [text for _, text in TEXT.findall(inside) if text in MODULES]
-    known = dict.fromkeys(name for module in (named[:1] or MODULES) for name in MODULES[module].stated())
-    return [f"{name}=" for name in known if not re.search(rf"\b{name}\s*=", inside)]
+        keyword = KEYWORD.search(rest)
+        return _values(function, keyword[1] if keyword else "", owner or "", inside, rest, variables or {})
+    names = _parameters(function, inside)
+    return [f"{name}=" for name in names if not re.search(rf"\b{name}\s*=", inside)]
 
 
 def install(ipython: "InteractiveShell") -> None:
@@ -51,14 +57,68 @@ def install(ipython: "InteractiveShell") -> None:
 
     @context_matcher(identifier="aolab")
     def matcher(context: "CompletionContext") -> dict:
-        before = context.full_text[: context.cursor_position]
+        # the cursor's position is that in its line
+        before = "\n".join([*context.full_text.split("\n")[: context.cursor_line], context.text_until_cursor])
         word = re.search(r"[\w?=&.]*$", before)
         begun = word[0] if word else ""
-        names = candidates(before[: len(before) - len(begun)])
+        names = candidates(before[: len(before) - len(begun)], ipython.user_ns)
         found = [SimpleCompletion(name, type="param" if name[-1] == "=" else "value") for name in names]
-        return {"completions": [one for one in found if one.text.startswith(begun)], "matched_fragment": begun}
+        fitting = [one for one in found if one.text.startswith(begun)]
+        # IPython offers its magic commands and all files in any string; a file fits where a scene does
+        others = _MAGIC if fitting and fitting[0].text in _scenes() else _MAGIC | {"IPCompleter.file_matcher"}
+        return {"completions": fitting, "matched_fragment": begun, "suppress": others if fitting else False}
 
     matchers.append(matcher)
+
+
+_MAGIC = {f"IPCompleter.{name}" for name in ("magic_matcher", "magic_config_matcher", "magic_color_matcher")}
+
+
+def _values(function: str, keyword: str, owner: str, inside: str, rest: str, variables: Mapping[str, Any]) -> list[str]:
+    """The texts that fit an argument: the one with this `keyword`, or else the one at this place."""
+    place = rest.count(",")
+    if keyword in ("buffer", "buffers") or (function in BUFFERS_OF_FRAMES and not keyword):
+        first = re.match(r"\s*(\w+)", inside)
+        frame = owner if function == "show" else first[1] if first else ""
+        return _buffers(function, variables.get(frame))
+    if keyword in ("scene", "scenes", "source") or (not keyword and place == 0 and function in SCENE_FIRST):
+        return _scenes()
+    if keyword in ("module", "modules", "like") or (not keyword and function not in ("load", "bake", "reference")):
+        return _modules()
+    if keyword == "tone_map":
+        from ..pipeline.lighting import ToneMap
+
+        return list(get_args(ToneMap))
+    from ..modules import MODULES
+    from ..modules.parameters import words
+
+    parts = [module.stated()[keyword] for module in MODULES.values() if keyword in module.stated()]
+    return list(dict.fromkeys(word for part in parts for word in words(part, keyword)))
+
+
+def _parameters(function: str, inside: str) -> list[str]:
+    from ..loading.named import describe_scene, scene_names
+    from ..modules import MODULES
+
+    texts = [text for _, text in TEXT.findall(inside)]
+    if function == "load":
+        return list(describe_scene(texts[0]).parameters) if texts and texts[0] in scene_names() else []
+    if function in ("reference", "compare", "bake", "show"):
+        return []
+    named = [text for text in texts if text in MODULES]
+    return list(dict.fromkeys(name for module in (named[:1] or MODULES) for name in MODULES[module].stated()))
+
+
+def _buffers(function: str, frame: Any) -> list[str]:
+    from ..modules.buffers import BUFFERS
+    from ..pipeline.frame import Frame
+    from ..truth.buffers import BUFFERS as TRACED
+
+    if isinstance(frame, Frame):
+        return frame.buffers
+    if function == "show":  # `aolab.show` takes frames
+        return []
+    return list(TRACED if function == "reference" else BUFFERS)
 
 
 def _scenes() -> list[str]:

@@ -29,6 +29,9 @@ def figures(paper: str, figure: str | None = None) -> dict[str, Callable[..., Fi
     if figure is None:
         return known
     if figure not in known:
+        likely = [name for name in known if figure.isdigit() and name == f"fig{figure}"]
+        if likely:
+            raise ParameterError(f"paper '{paper}' has no '{figure}' here; did you mean '{likely[0]}'?")
         raise ParameterError(f"paper '{paper}' has no '{figure}' here{suggestion(figure, known)}")
     return {figure: known[figure]}
 

@@ -16,7 +16,13 @@ _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
 
 
 def gray(values: np.ndarray) -> np.ndarray:
-    """A grey picture (H, W, 3) uint8 of `values` (H, W) in [0, 1]. NaN, the background, is white."""
+    """A grey picture (H, W, 3) uint8 of `values` (H, W) in [0, 1]. NaN, the background, is white.
+
+    Raises `ParameterError` for anything else.
+    """
+    if not isinstance(values, np.ndarray) or values.ndim != 2 or values.dtype.kind not in "fiub":
+        shape = f"an array {values.shape}" if isinstance(values, np.ndarray) else f"a {type(values).__name__}"
+        raise ParameterError(f"gray: {shape} is no array (H, W) of shares; write aolab.gray(frame['visibility'])")
     scaled = np.clip(np.nan_to_num(values, nan=1.0), 0, 1) * 255
     return np.repeat((scaled + 0.5).astype(np.uint8)[..., None], 3, axis=2)
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
+from numbers import Real
 from time import perf_counter
 from typing import Any
 from weakref import WeakSet
@@ -59,9 +60,8 @@ class Lab:
 
     @handed
     def __init__(self, size: Size = DEFAULT_SIZE, *, watch: bool = False) -> None:
-        self.size = size
+        self.size = check_size(size)
         self.watch = watch
-        context.get()
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
         self._environments, self._depth = EnvironmentMaps(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], Bindings] | None = None
@@ -172,8 +172,9 @@ class Lab:
         last: Frame | None,
     ) -> Frame:
         self._begin()
-        camera = camera or scene.camera
-        assert camera is not None  # Scene frames itself
+        camera = scene.camera if camera is None else camera
+        if not isinstance(camera, Camera):
+            raise ParameterError(f"camera = {camera!r:.80} is not an aolab.Camera")
         module = module.resolved(scene)
         view, reason_of_cut = self._view(camera, scene, size)
         self._make_room({view.size, view.scaled(module.scale).size})
@@ -421,7 +422,7 @@ def _whole(name: str, value: int, least: int, most: int | None = None) -> int:
 
 
 def _display(exposure: float, tone_map: ToneMap) -> Display:
-    if not 0 < exposure < float("inf"):
+    if not isinstance(exposure, Real) or not 0 < exposure < float("inf"):
         raise ParameterError(f"exposure = {exposure!r} is not a number above 0")
     if tone_map not in ("filmic", "linear"):
         raise ParameterError(f"tone_map = {tone_map!r} is not one of: filmic, linear")

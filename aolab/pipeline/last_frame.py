@@ -24,10 +24,9 @@ def last_frame(last: Frame | None, view: View) -> Bindings:
     """
     if last is None:
         return NO_LAST
-    if not isinstance(last.kept, SurfaceState):
-        raise ParameterError(
-            f"last: a frame of {last.info.get('module')} was not rendered by a lab; it has no textures"
-        )
+    if not isinstance(last, Frame) or not isinstance(last.kept, SurfaceState):
+        given = f"a frame of {last.info.get('module')}" if isinstance(last, Frame) else f"{last!r:.80}"
+        raise ParameterError(f"last: {given} was not rendered by a lab; it has no textures")
     before = last.kept.frame.view
     textures = {f"last_{name}": one for name, one in last.textures.items() if isinstance(one, moderngl.Texture)}
     uniforms = {

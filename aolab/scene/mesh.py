@@ -33,6 +33,8 @@ class Texture:
     mipmaps: bool = True
 
     def __post_init__(self) -> None:
+        if not isinstance(self.pixels, np.ndarray):
+            raise SceneError(f"texture '{self.name}': {self.pixels!r:.80} is no array (H, W, 4) uint8")
         if self.pixels.ndim != 3 or self.pixels.shape[2] != 4 or self.pixels.dtype != np.uint8 or not self.pixels.size:
             raise SceneError(
                 f"texture '{self.name}': pixels are {self.pixels.shape} {self.pixels.dtype}, not (H, W, 4) uint8"

@@ -31,6 +31,8 @@ class Instance:
     name: str = ""
 
     def __post_init__(self) -> None:
+        if not isinstance(self.mesh, Mesh):
+            raise SceneError(f"instance '{self.name}': mesh = {self.mesh!r:.80} is not a Mesh")
         matrix = np.array(self.world_from_local, np.float64)
         what = f"instance '{self.name or self.mesh.name}'"
         if matrix.shape != (4, 4) or not np.isfinite(matrix).all():
@@ -81,7 +83,7 @@ class Scene:
     source: str | None = None
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "instances", tuple(self.instances))
+        object.__setattr__(self, "instances", self._checked_instances())
         object.__setattr__(self, "lights", self._checked_lights())
         if self.environment is not None and not isinstance(self.environment, Environment):
             raise SceneError(
@@ -108,6 +110,15 @@ class Scene:
             )
         if self.camera is None:
             object.__setattr__(self, "camera", Camera.framing(self._framed()))
+
+    def _checked_instances(self) -> tuple[Instance, ...]:
+        instances = tuple(self.instances) if isinstance(self.instances, Iterable) else (self.instances,)
+        for one in instances:
+            if not isinstance(one, Instance):
+                raise SceneError(
+                    f"scene '{self.name}': {one!r:.80} is not an Instance; write Scene([Instance(mesh, matrix)])"
+                )
+        return instances
 
     def _checked_lights(self) -> tuple[Light, ...]:
         lights = tuple(self.lights) if isinstance(self.lights, Iterable) else None

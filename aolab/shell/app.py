@@ -22,12 +22,15 @@ from .view import view
 
 COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sweep, reproduce, animate, bake, view)
 
+NAMES = [*(command.__name__ for command in COMMANDS), "exercise"]
+
 app = typer.Typer(
     name="aolab",
     help="A laboratory for ambient lighting in image space.",
     epilog="`aolab COMMAND --help` describes a command. `--debug` shows the traceback of an error.",
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
@@ -40,7 +43,8 @@ def _print_version(asked: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version and exit.")
+        bool,
+        typer.Option("-V", "--version", callback=_print_version, is_eager=True, help="Print the version and exit."),
     ] = False,
 ) -> None: ...
 

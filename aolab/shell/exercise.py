@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from typer import Argument, Exit, Option, Typer
+from typer import Argument, Context, Exit, Option, Typer
 
 from . import completion, options
 
@@ -15,8 +15,15 @@ exercise = Typer(
     name="exercise",
     help="Exercises for a course: start, check, grade.",
     rich_markup_mode=None,
-    no_args_is_help=True,
+    invoke_without_command=True,
 )
+
+
+@exercise.callback()
+def _help(context: Context) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
 
 Name = Annotated[
     str,
@@ -78,10 +85,10 @@ def check(
     which: Which = None,
     limit: Limit = 120.0,
 ) -> None:
-    """Check a folder step by step: points, measured numbers, and hints for known mistakes.
+    """Check a folder step by step.
 
-    Each step is checked with its own functions; the other functions are those of the solution. The exit status is 1 if
-    a check fails.
+    Prints points, measured numbers, and hints for known mistakes. Each step is checked with its own functions; the
+    other functions are those of the solution. The exit status is 1 if a check fails.
     """
     from ..course import checked_apart
     from ..output import check_writable
@@ -106,7 +113,10 @@ def show(
     only: Only = None,
     which: Which = None,
 ) -> None:
-    """Draw each step: your picture, the expected picture, and their signed difference."""
+    """Draw each step beside the expected picture.
+
+    A row holds your picture, the expected picture, and their signed difference.
+    """
     from ..course import show as draw
     from ..output import replacing
     from .files import check_picture
@@ -121,7 +131,7 @@ def show(
 
 @exercise.command()
 def grade(
-    folders: Annotated[list[Path], Argument(metavar="DIR...", help="The folders of the students.")],
+    folders: Annotated[list[Path], Argument(metavar="DIR", help="The folders of the students.")],
     output: Annotated[Path, Option("-o", "--output", metavar="FILE.csv", help="The table to write, a row a folder.")],
     which: Which = None,
     seed: Seed = 0,
@@ -130,9 +140,10 @@ def grade(
         int | None, Option(metavar="N", min=1, help="Folders at a time. Default: the number of cores.")
     ] = None,
 ) -> None:
-    """Check many folders, each in a process with a time limit, and write a table.
+    """Check many folders, and write a table.
 
-    An endless loop, a crash or a missing file costs the points of its own folder only.
+    Each folder is checked in a process with a time limit: an endless loop, a crash or a missing file costs the points
+    of its own folder only.
     """
     from ..course import grade as run
     from ..course.grade import Graded, table
@@ -159,7 +170,10 @@ def new(
         str | None, Option(metavar="NAME", help="Copy this exercise. Default: a small template with comments.")
     ] = None,
 ) -> None:
-    """Make an exercise of your own: a folder with exercise.toml and task.md to edit."""
+    """Make an exercise of your own.
+
+    The folder holds exercise.toml and task.md to edit.
+    """
     from ..course import new as make
 
     made = make(folder, like=like)
@@ -169,3 +183,6 @@ def new(
 def _about(one: "Exercise") -> dict[str, object]:
     about = {name: getattr(one.spec, name) for name in ("title", "learn", "minutes", "paper")}
     return {"name": one.name, **about, "points": one.points, "steps": [step.name for step in one.spec.steps]}
+
+
+NAMES = [one.name or getattr(one.callback, "__name__", "") for one in exercise.registered_commands]

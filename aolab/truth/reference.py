@@ -12,6 +12,7 @@ from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
 from ..modules import MODULES, Module, find
+from ..modules.marched import Marched
 from ..modules.question import Question
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
@@ -82,7 +83,8 @@ def reference(
     its own: it has no question, and gives direct, ambient, indirect, radiance and image.
     Results are kept on disk (`AOLAB_CACHE`, else the platform's cache folder) by their content, unless `cache` is
     False. `progress` shows a bar; None shows it on a terminal.
-    Raises `ParameterError`, and what `aolab.load` and `aolab.render` raise.
+    Raises `ParameterError`, and what `aolab.load` and `aolab.render` raise. A `Notice` names the falloff where
+    `radius` is given alone.
     """
     scene = load(scene)
     if isinstance(like, Frame):
@@ -152,6 +154,13 @@ def _tell_missed(frame: Frame, error: float) -> None:
 def _asked(scene: Scene, like: Like | None, changes: dict[str, Any]) -> Question:
     """The question of `like`, or the physical one, with `changes`."""
     if like is None:
+        if changes.get("radius") is not None and not changes.keys() & {"falloff", "measure"}:
+            warnings.warn(
+                "the reference's falloff is 0, a hard edge at the radius; that of modules is "
+                f"{Marched.model_fields['falloff'].default} by default: give `like` a module, or state `falloff`",
+                Notice,
+                stacklevel=3,
+            )
         return Question().replace(**changes)
     if given := [name for name in ("radius", "falloff", "spread") if changes.get(name)]:
         raise ParameterError(f"{given[0]} comes from `like`; give either {given[0]} or `like`")

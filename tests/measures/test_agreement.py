@@ -43,7 +43,7 @@ def test_another_question_is_told_with_what_differs(frame, boxes):
 def test_a_buffer_that_a_question_does_not_change_is_compared_all_the_same(frame, boxes):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        compare(frame, truth(boxes, "direct", radius=1.0), "direct", flip=False)
+        compare(frame, truth(boxes, "direct", radius=1.0, falloff=0), "direct", flip=False)
         # a bounce would depend on it, visibility does not
         compare(frame, truth(boxes, like=aolab.Question(0.3, 0.3)), "visibility", flip=False)
 
@@ -57,7 +57,7 @@ def test_senders_of_another_reach_matter_to_a_bounce(lab, boxes):
 def test_a_module_without_radius_may_be_held_against_any(lab, boxes):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        compare(lab.render(boxes, "none", size=SIZE), truth(boxes, radius=0.5), "visibility", flip=False)
+        compare(lab.render(boxes, "none", size=SIZE), truth(boxes, radius=0.5, falloff=0), "visibility", flip=False)
 
 
 def test_another_camera_is_refused(frame, boxes):

@@ -149,7 +149,7 @@ def test_default_buffers_are_results(lab, boxes):
     found = compare(frame, frame, flip=False).buffers
     assert next(iter(found)) == "visibility"
     assert {"ambient", "radiance", "image"} <= set(found)
-    assert not {"viewZ", "viewNormal", "albedo"} & set(found)
+    assert not {"viewZ", "viewNormal", "facetNormal", "albedo"} & set(found)
     assert compare(frame, frame, "viewNormal")["viewNormal"].angle == pytest.approx(0, abs=1e-3)
 
 

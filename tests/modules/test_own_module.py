@@ -201,11 +201,32 @@ def test_a_wrong_declaration_is_a_parameter_error():
         class Strange(aolab.Module):
             level: np.ndarray = aolab.parameter(0.5, "An array.")
 
+    with pytest.raises(ParameterError, match=r"Listed: outputs = \['visibility'\] maps no buffers to formats"):
+
+        class Listed(aolab.Module):
+            outputs = ["visibility"]  # noqa: RUF012  # pyright: ignore[reportAssignmentType]
+
     class Undefined(aolab.Module):
         level: "Unknown" = 0.5  # noqa: F821  # pyright: ignore[reportUndefinedVariable]
 
     with pytest.raises(ParameterError, match=r"class Undefined: .*you should define `Unknown`"):
         Undefined()
+
+
+@pytest.mark.parametrize(
+    ("declared", "message"),
+    [
+        (aolab.parameter(5.0, "Too large.", le=1), r"Levelled: level = 5\.0 is not valid: float, ≤ 1"),
+        (aolab.parameter("a", "A word."), "Levelled: level = 'a' is not valid: float"),
+        (aolab.parameter(..., "None at all."), "Levelled: level has no value: float"),
+    ],
+)
+def test_a_wrong_default_is_named(declared, message):
+    class Levelled(aolab.Module):
+        level: float = declared
+
+    with pytest.raises(ParameterError, match=message):
+        Levelled()
 
 
 @pytest.mark.parametrize("size", [np.array([16, 9]), [np.int64(16), 9]])

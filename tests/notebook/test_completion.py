@@ -2,12 +2,15 @@
 
 import typing
 
+import numpy as np
 import pytest
 
 import aolab
 from aolab.loading import scene_names
 from aolab.modules import MODULES, ModuleName
-from aolab.notebook.completion import candidates
+from aolab.modules.filters import FILTERS
+from aolab.notebook.completion import candidates, install
+from aolab.truth.buffers import BUFFERS as TRACED
 
 
 def test_editors_know_the_names_of_all_modules():
@@ -46,6 +49,16 @@ def test_a_given_parameter_is_not_offered_again():
         ('print("', []),
         ('aolab.render("boxes")', []),
         ("aolab.load(", []),
+        ('aolab.load("toasters", ', ["time=", "count="]),
+        ('aolab.render(scene, "ssao", filter="', list(FILTERS)),
+        ('aolab.render(scene, "ssao", tone_map="', ["filmic", "linear"]),
+        ('aolab.render(scene, "ssao", radius="', ["auto"]),
+        ('aolab.compare_modules(scene, ["none", "', list(MODULES)),
+        ('aolab.relighting_error(scene, "', list(MODULES)),
+        ('aolab.reference(scene, buffers=["visibility", "', list(TRACED)),
+        ('aolab.reference(scene, like="', list(MODULES)),
+        ('aolab.bake("', scene_names()),
+        ('aolab.show("', []),
     ],
 )
 def test_a_string_offers_names(before, offered):
@@ -54,3 +67,49 @@ def test_a_string_offers_names(before, offered):
 
 def test_a_call_without_a_module_offers_the_parameters_of_all():
     assert {"power=", "bounces="} <= set(candidates("aolab.render(scene, "))
+
+
+FRAME = aolab.Frame({"visibility": np.ones((1, 1)), "mine": np.ones((1, 1))}, timings={}, info={})
+
+
+@pytest.mark.parametrize(
+    "before", ['frame.show("', 'aolab.compare(frame, truth, "', 'aolab.compare(frame, t, buffers=["']
+)
+def test_a_string_offers_the_buffers_of_the_frame(before):
+    assert candidates(before, {"frame": FRAME}) == ["mine", "visibility"]
+
+
+# --- IPython itself
+
+
+@pytest.fixture(scope="module")
+def tab():
+    """{text of a cell: IPython's completions at its end}, with a `frame` and a `scene` among the variables."""
+    completer = pytest.importorskip("IPython.core.completer")
+    shell = pytest.importorskip("IPython.core.interactiveshell").InteractiveShell()
+    shell.user_ns |= {"aolab": aolab, "scene": "boxes", "frame": FRAME}
+    install(shell)
+
+    def completions(cell: str) -> list[str]:
+        with completer.provisionalcompleter():
+            return [one.text for one in shell.Completer.completions(cell, len(cell))]
+
+    return completions
+
+
+@pytest.mark.parametrize(
+    ("cell", "offered"),
+    [
+        ('aolab.render(scene, "ssao", rad', ["radius="]),
+        ('x = 1\nframe = aolab.render(scene, "ssao",\n    rad', ["radius="]),  # a call over two lines
+        ('aolab.render(scene, "ssa', ["ssao"]),
+        ('aolab.render(scene, "ssao", filter="b', ["bilateral", "box4"]),
+        ('aolab.render("', scene_names()),
+        ('frame["m', ["mine"]),
+        ('frame.show("m', ["mine"]),
+        ("aolab.SSAO(rad", ["radius="]),
+    ],
+)
+def test_tab_in_ipython(tab, cell, offered, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)  # no files whose names fit
+    assert tab(cell) == offered

@@ -1,8 +1,10 @@
 """Contact sheets and tables: all pictures and texts are drawn, and none is covered."""
 
 import numpy as np
+import pytest
 from PIL import Image
 
+from aolab.errors import ParameterError
 from aolab.pictures.sheet import LINE, MARGIN, contact_sheet, gray, table
 
 RED = np.full((20, 300, 3), (255, 0, 0), np.uint8)
@@ -48,3 +50,9 @@ def test_a_table_has_its_rows_and_columns():
 
 def test_gray_is_white_in_the_background():
     assert gray(np.array([[0.0, 0.5, 1.0, 2.0, np.nan]]))[0, :, 0].tolist() == [0, 128, 255, 255, 255]
+
+
+@pytest.mark.parametrize("values", [5, [0.5], np.zeros(3), np.zeros((2, 2, 3)), "visibility"])
+def test_gray_of_anything_but_shares_is_refused(values):
+    with pytest.raises(ParameterError, match=r"no array \(H, W\) of shares"):
+        gray(values)

@@ -154,6 +154,8 @@ def test_a_frame_shows_itself_in_a_notebook(lab, boxes):
 
 def test_an_unknown_buffer_is_refused_with_the_known_ones(lab, plane):
     frame = lab.render(plane, "none")
+    with pytest.raises(ParameterError, match="no buffer '5'; known: "):
+        frame[5]
     with pytest.raises(ParameterError, match=r"no buffer 'visibilty'; did you mean 'visibility'\? .*albedo"):
         frame["visibilty"]
 
@@ -180,6 +182,9 @@ def test_buffers_are_saved_by_name(lab, boxes, tmp_path):
         ({"accumulate": 1.5}, r"accumulate = 1.5 is not"),
         ({"exposure": 0}, r"exposure = 0 is not a number above 0"),
         ({"exposure": float("nan")}, r"exposure = nan"),
+        ({"exposure": "bright"}, r"exposure = 'bright' is not a number above 0"),
+        ({"camera": (0, 1, 4)}, r"camera = \(0, 1, 4\) is not an aolab.Camera"),
+        ({"last": 5}, r"last: 5 was not rendered by a lab"),
         ({"tone_map": "aces"}, r"tone_map = 'aces' is not one of: filmic, linear"),
         ({"module": "sao"}, r"no module 'sao'; did you mean 'ssao'\?"),
         ({"radus": 1}, r"ssao has no parameter 'radus'; did you mean 'radius'\?"),
@@ -375,3 +380,9 @@ def test_normals_at_a_lower_scale_are_those_that_the_estimate_read(lab, ball, si
     frame = lab.render(ball, Seen(scale=scale, filter="none"), size=size)
     read = frame["seen_raw"][..., :3] @ frame.camera.view_from_world[:3, :3].astype(np.float32)
     np.testing.assert_allclose(frame.world_normal("seen_raw"), read, atol=1e-6)
+
+
+@pytest.mark.parametrize("size", [64, "boxes", (0, 5)])
+def test_a_lab_of_a_wrong_size_is_refused_when_it_is_made(size):
+    with pytest.raises(ParameterError, match="size = "):
+        aolab.Lab(size)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import small_scenes
 
-from aolab import DirectionalLight, Environment, Instance, Mesh, Notice, Scene, SceneError
+from aolab import DirectionalLight, Environment, Instance, Mesh, Notice, Scene, SceneError, Texture
 from aolab.modules.base import auto_radius
 
 BOX = small_scenes.box((0, 0, 0), (1, 2, 3))
@@ -62,6 +62,19 @@ def test_replace_keeps_the_meshes():
 def test_placements_that_cannot_be_drawn_are_refused(matrix, message):
     with pytest.raises(SceneError, match=message):
         Scene((Instance(BOX, matrix),))
+
+
+@pytest.mark.parametrize("instances", [5, [5], (Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),)])
+def test_other_things_than_instances_are_refused(instances):
+    with pytest.raises(SceneError, match="is not an Instance"):
+        Scene(instances)
+
+
+def test_other_things_than_meshes_and_arrays_are_refused():
+    with pytest.raises(SceneError, match="mesh = 5 is not a Mesh"):
+        Instance(5)  # type: ignore[arg-type]
+    with pytest.raises(SceneError, match="5 is no array"):
+        Texture(5)  # type: ignore[arg-type]
 
 
 def test_an_empty_scene_is_refused_by_name():

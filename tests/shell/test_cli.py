@@ -7,10 +7,11 @@ import pytest
 
 from aolab.papers import PAPERS
 from aolab.shell import cli
-from aolab.shell.app import COMMANDS as FUNCTIONS
+from aolab.shell.app import NAMES as COMMANDS
+from aolab.shell.exercise import NAMES as EXERCISES
 
 RUN = "import sys; sys.argv = ['aolab', *{!r}]; from aolab.shell.cli import main; main()"
-COMMANDS = [command.__name__ for command in FUNCTIONS]
+HELP = [(), *((name,) for name in COMMANDS), *(("exercise", name) for name in EXERCISES)]
 
 
 def test_the_installed_command_is_this_one():
@@ -18,17 +19,23 @@ def test_the_installed_command_is_this_one():
     assert script.load() is cli.main
 
 
-@pytest.mark.parametrize("command", [(), *((name,) for name in COMMANDS)])
+@pytest.mark.parametrize("command", HELP)
 def test_help_is_no_error_and_no_sentence_is_cut(aolab, monkeypatch, command):
     monkeypatch.setenv("COLUMNS", "80")
     done = aolab(*command, "--help")
     assert (done.code, done.err) == (0, "")
     assert "Usage: aolab" in done.out
-    assert "..." not in re.sub(r"\[(ARGS|OPTIONS)\]\.\.\.", "", done.out)
+    assert "..." not in re.sub(r"[]}]\.\.\.", "", done.out)
+
+
+def test_help_names_every_command(aolab):
+    assert all(f"\n  {name}  " in aolab().out for name in COMMANDS)
+    assert all(f"\n  {name} " in aolab("exercise").out for name in EXERCISES)
 
 
 def test_without_arguments_the_help_is_printed(aolab):
-    assert aolab() == aolab("--help")
+    assert aolab() == aolab("--help") == aolab("-h")
+    assert aolab("exercise") == aolab("exercise", "--help")
 
 
 def test_help_of_reproduce_names_every_paper(aolab):
@@ -37,7 +44,7 @@ def test_help_of_reproduce_names_every_paper(aolab):
 
 
 def test_version(aolab):
-    assert aolab("--version").out == f"aolab {version('aolab')}\n"
+    assert aolab("--version").out == aolab("-V").out == f"aolab {version('aolab')}\n"
 
 
 @pytest.mark.parametrize(
@@ -76,6 +83,23 @@ SLIPS = {
     "a place with spaces": ("render boxes --eye 0 1 -4", "write --eye 0,1,-4"),
     "a module in capitals": ("render boxes --module SSAO", "did you mean 'ssao'"),
     "two letters swapped": ("modules ssoa", "did you mean 'ssao'"),
+    "a module that is none, as an argument": ("render boxes ssoa", "write --module ssao"),
+    "a module as an argument of compare": ("compare boxes SSAO,ssdo", "write --modules ssao,ssdo"),
+    "--module of compare": ("compare boxes --module ssao", "write --modules ssao"),
+    "--set of compare": ("compare boxes --set radius=0.5", 'write --modules "ssao?radius=0.5"'),
+    "--scene of render": ("render --scene boxes", "write aolab render boxes"),
+    "a parameter as an argument": ("render boxes radius=0.5", "write --set radius=0.5"),
+    "a scene as an argument of bench": ("bench boxes", "write --scene boxes"),
+    "a misspelt scene as the command": ("boxs", "write: aolab render boxes"),
+    "a module as the command": ("SSAO", "write: aolab render boxes --module ssao"),
+    "help as the command": ("help", "write: aolab --help"),
+    "version as the command": ("version", "write: aolab --version"),
+    "no scene": ("compare", "`aolab scenes` lists them"),
+    "no module": ("tune", "`aolab modules` lists them"),
+    "no paper": ("reproduce", "aolab reproduce s3ho"),
+    "the number of a figure": ("reproduce s3ho 7", "did you mean 'fig7'"),
+    "an unknown command of exercises": ("exercise chek", "no command 'exercise chek'; did you mean 'check'"),
+    "a model that is missing": ("render model.glb", "knot.glb"),
     "an unknown command": ("rendr boxes", "no command 'rendr'; did you mean 'render'?"),
 }
 

@@ -1,5 +1,7 @@
 """The reference answers a module's whole question: radius, falloff, measure, cone, and how far senders see."""
 
+import warnings
+
 import numpy as np
 import pytest
 import small_scenes
@@ -153,3 +155,14 @@ def test_in_a_sealed_room_a_module_and_its_truth_bounce_alike(lab):
     assert truth["indirect"].mean() > 0.03
     physical = reference(sealed_room(), radius=1.0, falloff=module.falloff, size=(64, 48), rays=16, buffers="indirect")
     assert (physical["indirect"] == 0).all()
+
+
+def test_a_radius_alone_is_answered_with_the_falloff_of_the_modules():
+    scene = small_scenes.plane()
+    with pytest.warns(aolab.Notice, match=r"the reference's falloff is 0.* that of modules is 0\.3 by default"):
+        aolab.reference(scene, size=(8, 6), rays=2, radius=1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        aolab.reference(scene, size=(8, 6), rays=2, radius=1.0, falloff=0)
+        aolab.reference(scene, size=(8, 6), rays=2, like="ssao")
+        aolab.reference(scene, size=(8, 6), rays=2)

@@ -31,7 +31,7 @@ def fig6(size: Size = (480, 270)) -> Figure:
     """
     scene = _post()
     lit = scene.replace(lights=(_bulb(),))
-    truth = reference(lit, size=size, rays=64, radius=max(RADII), buffers=("direct", "ambient"))
+    truth = reference(lit, size=size, rays=64, radius=max(RADII), falloff=0, buffers=("direct", "ambient"))
     mapped = shared_lab().render(lit, "none", size=size)
     beside = {
         "one layer": ("rays", over_background(truth["direct"] + truth["ambient"], truth)),
