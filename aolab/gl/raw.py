@@ -55,6 +55,17 @@ def or_bits() -> Iterator[None]:
         gl.disable_direct(_COLOR_LOGIC_OP)
 
 
+@contextmanager
+def depth_up_to(far: float) -> Iterator[None]:
+    """Depths that are drawn inside lie from 0 to `far`, in place of 0 to 1."""
+    depth_range = function("glDepthRange", None, ctypes.c_double, ctypes.c_double)
+    depth_range(0.0, far)
+    try:
+        yield
+    finally:
+        depth_range(0.0, 1.0)
+
+
 def mirror(texture: moderngl.Texture, axis: int) -> None:
     """Let the texture go on mirrored along an axis, 0 for u and 1 for v."""
     texture.use(0)

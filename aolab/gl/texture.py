@@ -32,6 +32,7 @@ _DTYPES = {
     "f4": (np.float32, np.float32),
     "u4": (np.uint32, np.uint32),
 }
+DEPTH = "DEPTH24"  # the format of a depth texture, which `make` makes too
 Size = tuple[int, int]
 Depth = moderngl.Texture | moderngl.Renderbuffer
 
@@ -53,6 +54,10 @@ def make(size: Size, format: str, data: bytes | None = None) -> moderngl.Texture
 
     `extra` of the texture is its border: the value that samplers read beyond the edge, or None for the nearest texel.
     """
+    if format == DEPTH:
+        depth = context.get().depth_texture(size)
+        refuse_exhaustion(f"a depth texture of {size[0]}x{size[1]}")
+        return depth
     if format not in FORMATS:
         raise ParameterError(f"texture format '{format}' is unknown{suggestion(format, FORMATS)}")
     components, dtype = FORMATS[format]
@@ -119,7 +124,7 @@ class Pool:
 
     def framebuffer(self, textures: list[moderngl.Texture], depth: Depth | None = None) -> moderngl.Framebuffer:
         """A framebuffer over these textures, kept."""
-        key = (*(texture.glo for texture in textures), -1 if depth is None else depth.glo)
+        key = (*(texture.glo for texture in textures), *_depth_key(depth))
         if key not in self._framebuffers:
             self._framebuffers[key] = attach(textures, depth)
         return self._framebuffers[key]
@@ -130,6 +135,13 @@ class Pool:
             gone = {texture.glo for texture in self._free.pop(key)}
             for names in [names for names in self._framebuffers if gone & set(names)]:
                 del self._framebuffers[names]
+
+
+def _depth_key(depth: Depth | None) -> tuple[int, ...]:
+    """Textures and renderbuffers are numbered apart: those of renderbuffers are negative here."""
+    if depth is None:
+        return ()
+    return 0, depth.glo if isinstance(depth, moderngl.Texture) else -depth.glo
 
 
 def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:

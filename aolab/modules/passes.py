@@ -22,6 +22,8 @@ class Pass:
     variables whose name differs from the buffer's. `constants` are compile-time values beyond the module's parameters.
     `outside` (buffer: value) is the value that samplers read beyond the edge of an output; without it, they read the
     nearest texel. `includes` maps the name of an include to the file, or to the GLSL text, that stands for it.
+    `background` (buffer: value), where given, has for each output the value that the shader writes where no surface is.
+    Then the pass may be drawn over surfaces alone.
     """
 
     name: str
@@ -32,6 +34,7 @@ class Pass:
     writes: Mapping[str, str] = field(default_factory=dict)
     outside: Mapping[str, float] = field(default_factory=dict)
     includes: Mapping[str, str] = field(default_factory=dict)
+    background: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def outs(self) -> dict[str, str]:

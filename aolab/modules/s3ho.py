@@ -117,7 +117,7 @@ class S3HO(Marched):
 
     def passes(self) -> list[Pass]:
         constants = {"fading": self.strength > 0, "plain": self.estimator == "plain"}
-        return [Pass("s3ho", self.shader, OCCLUSION, constants)]
+        return [Pass("s3ho", self.shader, OCCLUSION, constants, background=dict.fromkeys(OCCLUSION, 0.0))]
 
     def sends(self) -> bool:
         return self.indirect

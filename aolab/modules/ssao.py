@@ -1,7 +1,10 @@
 """Screen-space ambient occlusion over the hemisphere."""
 
+from dataclasses import replace
+
 from .marched import Marched
 from .parameters import parameter
+from .passes import Pass
 
 
 class SSAO(Marched):
@@ -19,3 +22,8 @@ class SSAO(Marched):
     power: float = parameter(
         1.0, "Contrast: the visibility is raised to this power; 1 is the physical value.", gt=0, le=8
     )
+
+    def passes(self) -> list[Pass]:
+        passes = super().passes()
+        own = self.shader == SSAO.shader  # a shader of a subclass may write other values
+        return [replace(one, background={"visibility": 1.0}) for one in passes] if own else passes

@@ -8,7 +8,7 @@ from ..modules.estimate import Estimate
 from ..modules.passes import GeometryPass, Pass
 from ..scene.view import View
 from . import filters
-from .pass_runner import Buffers
+from .pass_runner import Buffers, Where
 from .state import FrameContext, SurfaceState
 from .surfaces import facing
 
@@ -31,14 +31,22 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
         raw = _accumulated(state, what, given, formats)
     # a filter compares distances to the tangent plane, which no map bends
     small, large = (facing(state.small, "geometric"), state.small_view), (facing(state.large, "geometric"), frame.view)
-    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large)
+    where = state.small_where
+    background = {name: value for step in what.passes for name, value in step.background.items()} if where else {}
+    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large, where, background)
     return {**{f"{name}_raw": texture for name, texture in raw.items()}, **result}
 
 
-def steps(frame: FrameContext, passes: Iterable[Pass], given: Sequence[Bindings], view: View | None = None) -> Buffers:
+def steps(
+    frame: FrameContext,
+    passes: Iterable[Pass],
+    given: Sequence[Bindings],
+    view: View | None = None,
+    where: Where | None = None,
+) -> Buffers:
     """The outputs of passes that run once each, in order: a pass may read those before it.
 
-    Full-screen passes have the size of `view`, by default the frame's.
+    Full-screen passes have the size of `view`, by default the frame's; those with a `background` are drawn `where`.
     """
     view, made, fillers = view or frame.view, {}, {}
     seen = Bindings("the view", uniforms=view.uniforms, constants=view.constants)
@@ -53,7 +61,9 @@ def steps(frame: FrameContext, passes: Iterable[Pass], given: Sequence[Bindings]
         if isinstance(step, GeometryPass):
             made = made | frame.rasterizer.draw(step, view, before)
         else:
-            made = made | frame.runner.run(step, [seen, frame.last, *before], view.size)
+            made = made | frame.runner.run(
+                step, [seen, frame.last, *before], view.size, where=where if step.background else None
+            )
     return made
 
 
@@ -78,7 +88,7 @@ def _passes(state: SurfaceState, what: Estimate, given: Sequence[Bindings], seed
         frame.samples(seed),
         *given,
     ]
-    made = steps(frame, what.passes, known, state.small_view)
+    made = steps(frame, what.passes, known, state.small_view, state.small_where)
     outputs = {name: made.pop(name) for name in what.outputs}
     frame.runner.give_back(made)
     return outputs

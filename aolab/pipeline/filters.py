@@ -4,6 +4,8 @@ A pass treats up to four buffers alike, and reads the geometry once for all of t
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 
 import moderngl
 
@@ -13,7 +15,7 @@ from ..gl.texture import FORMATS
 from ..modules.filters import Filter
 from ..modules.filters.base import MOST_SOURCES, over_sources
 from ..scene.view import View, ray_scale_offset
-from .pass_runner import Buffers, PassRunner
+from .pass_runner import Buffers, PassRunner, Where
 
 Formats = Mapping[str, str]
 
@@ -25,8 +27,13 @@ def apply(
     formats: Formats,
     small: tuple[Buffers, View],
     large: tuple[Buffers, View],
+    where: Where | None = None,
+    background: Mapping[str, float] = MappingProxyType({}),
 ) -> Buffers:
-    """Each buffer of the estimate, filtered and at full size; `small` and `large` are surfaces with their view."""
+    """Each buffer of the estimate, filtered and at full size; `small` and `large` are surfaces with their view.
+
+    `where` are the pixels with surfaces; `background` has the values of buffers of the estimate elsewhere.
+    """
     result: Buffers = {}
     upsampled = small[1].size != large[1].size
     for names in _groups(estimate):
@@ -36,18 +43,27 @@ def apply(
                 textures = _upsample(runner, filter, textures, some, small, large)
             result |= _passes(runner, filter, textures, some, large)
         else:
-            textures = _passes(runner, filter, textures, some, small)
+            there = where if background.keys() >= some.keys() else None
+            textures = _passes(runner, filter, textures, some, small, there, background)
             result |= _upsample(runner, filter, textures, some, small, large) if upsampled else textures
     return result
 
 
 def _passes(
-    runner: PassRunner, filter: Filter, textures: Buffers, formats: Formats, surfaces: tuple[Buffers, View]
+    runner: PassRunner,
+    filter: Filter,
+    textures: Buffers,
+    formats: Formats,
+    surfaces: tuple[Buffers, View],
+    where: Where | None = None,
+    background: Mapping[str, float] = MappingProxyType({}),
 ) -> Buffers:
-    """The filter's passes, each over the result of the one before it."""
+    """The filter's passes, each over the result of the one before it; `where`, if the filter keeps the background."""
+    where = where if filter.keeps_background else None
     given = textures
     for step in filter.passes(formats):
-        made = runner.run(step, [*_common(filter, *surfaces), _sources(textures)], surfaces[1].size)
+        step = replace(step, background={name: background[name] for name in formats}) if where else step
+        made = runner.run(step, [*_common(filter, *surfaces), _sources(textures)], surfaces[1].size, where=where)
         if textures is not given:
             runner.give_back(textures)
         textures = made

@@ -17,7 +17,7 @@ from ..errors import Notice, ParameterError
 from ..gl import context
 from ..gl.bindings import Bindings
 from ..gl.program import Programs
-from ..gl.texture import Pool, Size, check_size, refuse_exhaustion
+from ..gl.texture import DEPTH, Pool, Size, check_size, refuse_exhaustion
 from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
 from ..modules.buffers import BUFFERS, ON_DEMAND, REFLECTIVE
@@ -38,7 +38,7 @@ from .frame import Frame, Later, lend, noting
 from .geometry import Geometry
 from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, Lit, ToneMap
-from .pass_runner import Buffers, PassRunner
+from .pass_runner import Buffers, PassRunner, Where
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
 from .reflective import PACKED, ReflectiveMaps, draw_reflective
@@ -228,11 +228,13 @@ class Lab:
         """The surfaces, whose pixels `drawn` counts, and the estimate of a module that does not depend on light."""
         module, view, runner, asked = frame.module, frame.view, frame.runner, all_asked(frame)
         with self._lending(runner):
+            depth = runner.take(view.size, DEPTH)
             with drawn:
-                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame, asked))
+                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame, asked), depth=depth)
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
-            state = SurfaceState(frame, asked, large, small, small_view, occluders(frame, asked, large), {})
+            hiding = occluders(frame, asked, large)
+            state = SurfaceState(frame, asked, large, small, small_view, hiding, {}, Where(depth))
             if not module.lit:
                 state = replace(state, estimate=estimate(state, module.estimate()))
             refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")

@@ -29,6 +29,7 @@ ToneMap = Literal["filmic", "linear"]
 _COMPOSE = Pass("compose", "pipeline/compose.frag", {name: LIT[name].format for name in ("radiance", "image")})
 
 _IMAGE = Pass("image", "pipeline/image.frag", {"image": LIT["image"].format})
+_SKY = Pass("image", "pipeline/sky.frag", _IMAGE.outputs)
 
 _KIND = {DirectionalLight: 0, PointLight: 1, SpotLight: 2}  # as in glsl/lib/light.glsl
 
@@ -166,20 +167,23 @@ def in_one_pass(module: Module) -> bool:
 
 
 def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display) -> Buffers:
-    """`image` in one pass, of a module for which `in_one_pass` is true."""
+    """`image` of a module for which `in_one_pass` is true: one pass over surfaces, one over the background."""
     frame, surfaces = state.frame, state.large
     terms = [step for step in frame.module.lighting() if isinstance(step, Pass)]
+    shown = _shown(environment, frame.view, display)
     given = [
         Bindings("the surfaces", {"emission": surfaces["albedo"], **surfaces}),  # samplers must be bound
         Bindings("the estimate", state.estimate),
         frame.parameters,
         *lights.seen_from(frame.view),
         *(Bindings(f"the pass '{one.name}'", constants=one.constants, includes=one.includes) for one in terms),
-        *_shown(environment, frame.view, display),
+        *shown,
     ]
     has = {"has_emission": "emission" in surfaces}
     includes = {} if any(one.name == "indirect" for one in terms) else {"indirect.glsl": "lighting/no_indirect.glsl"}
-    return frame.runner.run(replace(_IMAGE, constants=has, includes=includes), given, frame.view.size)
+    runner, size = frame.runner, frame.view.size
+    made = runner.run(replace(_IMAGE, constants=has, includes=includes), given, size, where=state.where)
+    return runner.run(_SKY, shown, size, targets=made, where=state.where.background)
 
 
 def _shown(environment: moderngl.Texture, view: View, display: Display) -> Sequence[Bindings]:

@@ -1,7 +1,9 @@
 """Runs full-screen passes: textures in by name, textures out by name, timed."""
 
 import weakref
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, nullcontext
+from dataclasses import dataclass
 from functools import partial
 from types import MappingProxyType
 
@@ -20,6 +22,39 @@ from ..modules.passes import Pass
 from ..scene.view import Region
 
 Buffers = dict[str, moderngl.Texture]
+
+FARTHEST = 0.99  # the depth of a surface at the far plane, below that of the background, which is 1
+
+
+@dataclass(frozen=True, eq=False)
+class Where:
+    """The pixels over which a pass is drawn: the `surfaces` of the G-buffer with this `depth`, or else the background.
+
+    A full-screen triangle has the depth 1, as the background. A software renderer skips a pixel by its depth test, but
+    computes both sides of each `if` of a shader.
+    """
+
+    depth: Depth
+    surfaces: bool = True
+
+    @property
+    def background(self) -> "Where":
+        """The other pixels."""
+        return Where(self.depth, surfaces=False)
+
+    @contextmanager
+    def test(self, framebuffer: moderngl.Framebuffer) -> Iterator[None]:
+        """Draw these pixels alone. The depth stays as it is."""
+        gl = context.get()
+        framebuffer.depth_mask = False
+        gl.enable_only(moderngl.DEPTH_TEST)
+        gl.depth_func = ">" if self.surfaces else "<="
+        try:
+            yield
+        finally:
+            gl.depth_func = "<"
+            framebuffer.depth_mask = True
+            gl.enable_only(moderngl.NOTHING)
 
 
 class PassRunner:
@@ -79,8 +114,12 @@ class PassRunner:
         *,
         targets: Buffers | None = None,
         region: Region | None = None,
+        where: Where | None = None,
     ) -> Buffers:
         """Draw one pass over the whole of `size`, or over a `region` of it; returns its outputs.
+
+        With `where`, the pass is drawn there. Elsewhere, its outputs have the values of its `background`; those that it
+        does not name, and `targets`, stay as they are.
 
         `targets`, where given, are drawn into in place of new textures. Raises `ParameterError` for a name that two of
         the bindings give, and `ShaderError`.
@@ -90,10 +129,13 @@ class PassRunner:
         outputs = targets or self.targets(step, size)
         program.set(given.uniforms, given.words)
         self.bind(program, given.textures, step.reads)
-        framebuffer = self.framebuffer(program, step, outputs)
+        framebuffer = self.framebuffer(program, step, outputs, where.depth if where else None)
         whole = region or (0, 0, *size)
-        framebuffer.use()
-        with self.timer.measure(step.name):
+        with self.timer.measure(step.name), where.test(framebuffer) if where else nullcontext():
+            if where and not targets:
+                for name, value in step.background.items():
+                    self.pool.framebuffer([outputs[name]]).clear(value, value, value, value)
+            framebuffer.use()
             for band in bands(program, whole) if self.timer.software else (whole,):
                 framebuffer.viewport = band
                 self._fullscreen(program).render(moderngl.TRIANGLES, 3)

@@ -13,7 +13,7 @@ from ..modules.passes import GeometryPass, Pass
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
 from .geometry import MESH_TEXTURES, MESH_UNIFORMS, Geometry, kinds_of
-from .pass_runner import Buffers, PassRunner
+from .pass_runner import FARTHEST, Buffers, PassRunner
 from .surfaces import G_BUFFER, g_buffer, with_facets
 
 
@@ -45,9 +45,20 @@ class Rasterizer:
     ) -> None:
         self.runner, self.geometry, self.depth, self.scene, self.last = runner, geometry, depth, scene, last
 
-    def surfaces(self, views: Sequence[View], name: str = "g_buffer", formats: Mapping[str, str] = G_BUFFER) -> Buffers:
-        """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`."""
-        return with_facets(self.triangles(g_buffer(name, self._needed(formats), atlas=len(views) > 1), views))
+    def surfaces(
+        self,
+        views: Sequence[View],
+        name: str = "g_buffer",
+        formats: Mapping[str, str] = G_BUFFER,
+        depth: Depth | None = None,
+    ) -> Buffers:
+        """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`.
+
+        `depth` is filled with depths of up to `FARTHEST`, and 1 in the background.
+        """
+        step = g_buffer(name, self._needed(formats), atlas=len(views) > 1)
+        with raw.depth_up_to(FARTHEST):
+            return with_facets(self.triangles(step, views, depth=depth))
 
     def _needed(self, formats: Mapping[str, str]) -> Mapping[str, str]:
         """The formats, and those of buffers that this scene needs besides.

@@ -10,7 +10,7 @@ from ..modules.measures import Measure
 from ..modules.occluders.base import OccluderKind, Occluders
 from ..scene.scene import Scene
 from ..scene.view import View
-from .pass_runner import Buffers, PassRunner
+from .pass_runner import Buffers, PassRunner, Where
 from .rasterizer import Rasterizer
 from .surfaces import shrink
 
@@ -88,7 +88,7 @@ class SurfaceState:
     """The surfaces and the estimate of a frame. They do not depend on light, so that the frame can be lit again.
 
     `large` are the surfaces at full size, `small` those at the module's scale, with `small_view`. `estimate` holds the
-    module's outputs unless the module is `lit`.
+    module's outputs unless the module is `lit`. `where` are the pixels with surfaces, at full size.
     """
 
     frame: FrameContext
@@ -98,6 +98,12 @@ class SurfaceState:
     small_view: View
     occluders: Occluders
     estimate: Buffers
+    where: Where
+
+    @property
+    def small_where(self) -> Where | None:
+        """The pixels with surfaces at the size of `small`; None where they are not known."""
+        return self.where if self.small is self.large else None
 
     @property
     def known(self) -> Sequence[Bindings]:

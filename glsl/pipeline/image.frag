@@ -1,12 +1,11 @@
-// The picture in one pass: the fast form of direct.frag, ambient.frag, indirect.frag and compose.frag, which stores none of
-// the terms. It is made of the same functions.
+// The surfaces of the picture in one pass: the fast form of direct.frag, ambient.frag, indirect.frag and compose.frag, which
+// stores none of the terms. It is made of the same functions. sky.frag draws the background.
 // Inputs: viewZ, viewNormal, albedo, emission, and those of the functions. Output: image (sRGB, 8 bits).
 
 #include "lib/surface.glsl"
 #include "direct.glsl"
 #include "ambient.glsl"
 #include "indirect.glsl"
-#include "lib/background.glsl"
 #include "lib/display.glsl"
 
 const bool has_emission;
@@ -17,12 +16,8 @@ out vec4 image;
 
 void main() {
     Surface surface;
-    vec3 total;
-    if (surfaceHere(surface)) {
-        total = directAt(surface) + ambientAt(surface) + indirectAt(surface);
-        if (has_emission) total += texelFetch(emission, surface.pixel, 0).rgb;
-    } else {
-        total = backgroundAt(gl_FragCoord.xy, ray_from_pixel, world_from_view);
-    }
+    surfaceHere(surface);
+    vec3 total = directAt(surface) + ambientAt(surface) + indirectAt(surface);
+    if (has_emission) total += texelFetch(emission, surface.pixel, 0).rgb;
     image = vec4(displayed(total), 1.0);
 }

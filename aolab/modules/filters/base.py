@@ -12,16 +12,18 @@ MOST_SOURCES = 4  # textures a pass: with those of the geometry, well below the 
 class Filter(Choice):
     """A way to remove noise. A subclass states its parameters, and these facts:
 
-    `name` (lower case); `passes`; `upsampling`, the shader that brings an estimate of a lower `scale` to full size; and
-    `at_full_size`, whether the passes run after the upsampling in place of before it. Each pass reads up to four
-    buffers as `source0` to `source3` and writes `results` (lib/sources.glsl), and may read viewZ, viewNormal and albedo
-    at its size. The upsampling shader reads besides smallViewZ and smallNormal. The filter's numbers are uniforms and
-    constants of all of these shaders by themselves.
+    `name` (lower case); `passes`; `upsampling`, the shader that brings an estimate of a lower `scale` to full size;
+    `at_full_size`, whether the passes run after the upsampling in place of before it; and `keeps_background`, whether
+    the passes leave values as they are where no surface is, so that they may be drawn over surfaces alone. Each pass
+    reads up to four buffers as `source0` to `source3` and writes `results` (lib/sources.glsl), and may read viewZ,
+    viewNormal and albedo at its size. The upsampling shader reads besides smallViewZ and smallNormal. The filter's
+    numbers are uniforms and constants of all of these shaders by themselves.
     """
 
     axis: ClassVar[str] = "filter"
     upsampling: ClassVar[str] = "pipeline/upsample.frag"
     at_full_size: ClassVar[bool] = False
+    keeps_background: ClassVar[bool] = False
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         """The passes over up to four buffers, `formats` (name: format); each reads the results of the one before it."""

@@ -10,6 +10,7 @@ class Bilateral(Filter):
     """Weights over 8 pixels of a row, then of a column, by geometry (Herholz et al. 2012)."""
 
     name = "bilateral"
+    keeps_background = True
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         shader = "pipeline/bilateral.frag"
