@@ -40,6 +40,8 @@ def _control(owner: type[Parameters], name: str, resolved: Any, scene: Scene) ->
     field = owner.model_fields[name]
     about = describe(owner, name)
     resolved = field.default if resolved is None else resolved
+    if resolved == AUTO and about["unit"] == "scene units":  # no one number: a length to start from
+        resolved = auto_radius(scene)
     result = {
         "name": name,
         "default": field.default,

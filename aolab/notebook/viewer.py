@@ -15,6 +15,7 @@ from ..errors import Error, Notice
 from ..gl.texture import Size
 from ..measures import compare
 from ..modules import MODULES, Module, find
+from ..modules.parameters import AUTO
 from ..pictures.buffers import buffer_pixels, first_buffer, scale_of
 from ..pipeline.api import shared_lab
 from ..pipeline.frame import Frame
@@ -219,8 +220,9 @@ class Viewer:
         for row, control in enumerate(self._controls):
             value = self.parameters.get(control["name"], control["default"])
             text = f"{value:.4g}" if isinstance(value, float) else str(value)
+            text += f" {control['unit']}" if value != AUTO else ""
             mark, color = (">", CHOSEN) if row == chosen else ("  ", FAINT)
-            found.append((f"{mark} {control['name']} = {text} {control['unit']}", color))
+            found.append((f"{mark} {control['name']} = {text}", color))
         first = max(0, min(chosen - room // 2, len(found) - room))
         return found[first : first + max(1, room)]
 

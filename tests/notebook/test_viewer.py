@@ -14,7 +14,7 @@ from PIL import Image
 
 import aolab
 from aolab.modules import MODULES
-from aolab.notebook.viewer import LINE, MARGIN, Viewer
+from aolab.notebook.viewer import CHOSEN, LINE, MARGIN, Viewer
 
 SIZE = (200, 120)
 
@@ -115,6 +115,18 @@ def test_every_parameter_of_every_module_can_be_changed(viewer):
             assert viewer.module
             viewer.press("down")
         viewer.press("m")
+
+
+@pytest.mark.parametrize(("module", "name"), [("ssao", "radius"), ("instant_radiosity", "vpl_clamp")])
+def test_a_length_that_is_auto_steps_to_a_number(boxes, module, name):
+    viewer = Viewer(boxes, aolab.modules.find(module, MODULES), SIZE)
+    viewer.press("p")
+    for _ in range([one["name"] for one in viewer._controls].index(name)):
+        viewer.press("down")
+    assert (f"> {name} = auto", CHOSEN) in viewer._panel_lines(40)
+    viewer.press("right")
+    assert viewer.parameters[name] > 0
+    assert any(text.startswith(f"> {name} = ") and text.endswith(" scene units") for text, _ in viewer._panel_lines(40))
 
 
 def test_an_error_is_written_in_the_picture(viewer):
