@@ -57,13 +57,18 @@ def img(
 
 
 def table(heads: Sequence[str], rows: Iterable[Sequence[object]], caption: str = "") -> str:
-    """A table of texts. The texts are escaped."""
+    """A table of texts. The texts are escaped. A table that is wider than the page scrolls."""
     top = "".join(f'<th style="{CELL}">{escape(head)}</th>' for head in heads)
     body = "".join(
         "<tr>" + "".join(f'<td style="{CELL}">{escape(str(cell))}</td>' for cell in row) + "</tr>" for row in rows
     )
     above = f"<caption>{escape(caption)}</caption>" if caption else ""
-    return f"<table>{above}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
+    return scrolling(f"<table>{above}<thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>")
+
+
+def scrolling(wide: str) -> str:
+    """HTML that scrolls to the side where the page is too narrow for it."""
+    return f'<div style="overflow-x: auto">{wide}</div>'
 
 
 def tabs(parts: Iterable[tuple[str, str]], group: str) -> str:

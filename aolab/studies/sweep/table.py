@@ -63,7 +63,8 @@ class SweepTable(pd.DataFrame):
         from .plots import overview
 
         pictures = [(caption, html.img(plot._repr_png_(), caption)) for caption, plot in overview(self)]
-        return (super()._repr_html_() or "") + html.tabs(pictures, f"aolab-sweep-{id(self)}-{next(_page)}")
+        rows = html.scrolling(super()._repr_html_() or "")
+        return rows + html.tabs(pictures, f"aolab-sweep-{id(self)}-{next(_page)}")
 
     def to_xarray(self, *measures: str) -> Any:  # pyright: ignore[reportIncompatibleMethodOverride]
         """An xarray Dataset: a dimension an input with more than one value, a variable a measure (default: all).
