@@ -35,6 +35,15 @@ def progress_bar(what: str, total: int, unit: str = "", *, shown: bool | None = 
 
         return in_notebook(**usual, delay=PATIENCE)
     if shown or (sys.stderr is not None and sys.stderr.isatty()):
-        return tqdm(**usual, delay=0 if shown else PATIENCE, dynamic_ncols=True)
+        return tqdm(**usual, delay=0 if shown else PATIENCE, **_width())
     layout = "{desc}: {percentage:.0f} %, {elapsed} elapsed, {remaining} left"
     return _Lines(**usual, bar_format=layout, delay=LOG_EVERY, mininterval=LOG_EVERY, miniters=1)
+
+
+def _width() -> dict[str, Any]:
+    """tqdm's options for the width: of the terminal, or 80 columns where it reports none, as in some containers."""
+    try:
+        known = os.get_terminal_size(sys.stderr.fileno()).columns > 0
+    except (OSError, ValueError):
+        known = False
+    return {"dynamic_ncols": True} if known else {"ncols": 80, "nrows": 24}

@@ -1,6 +1,7 @@
 """Progress of long work: a bar in a terminal, a line now and then in a log, nothing for short work."""
 
 import io
+import os
 import re
 import sys
 
@@ -81,3 +82,19 @@ def test_without_standard_error_nothing_fails(monkeypatch):
     monkeypatch.setattr("sys.stderr", None)
     with progress.progress_bar("reference", 4) as bar:
         bar.update(4)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals")
+def test_a_terminal_that_reports_no_size_gets_a_bar(monkeypatch):
+    import pty
+
+    ours, theirs = pty.openpty()  # 0 columns, as of a container without a window
+    os.set_blocking(ours, False)
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    with open(theirs, "w") as stream:
+        monkeypatch.setattr("sys.stderr", stream)
+        with progress.progress_bar("reference", 4, mininterval=0) as bar:
+            bar.update()
+            assert b"reference:  25%|" in os.read(ours, 10_000)
+    os.close(ours)
