@@ -117,7 +117,8 @@ class S3HO(Marched):
 
     def passes(self) -> list[Pass]:
         constants = {"fading": self.strength > 0, "plain": self.estimator == "plain"}
-        return [Pass("s3ho", self.shader, OCCLUSION, constants, background=dict.fromkeys(OCCLUSION, 0.0))]
+        # no `background`: with four targets, the depth test costs more than it saves (docs/performance.md)
+        return [Pass("s3ho", self.shader, OCCLUSION, constants)]
 
     def sends(self) -> bool:
         return self.indirect

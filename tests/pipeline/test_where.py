@@ -33,7 +33,7 @@ def over_all(lab: aolab.Lab, monkeypatch, module: aolab.Module, **options) -> ao
 
 
 def test_these_methods_are_drawn_there():
-    assert set(DRAWN_THERE) == {"ssao", "s3ho", "ssbn", "instant_radiosity"}
+    assert set(DRAWN_THERE) == {"ssao", "ssbn", "instant_radiosity"}
 
 
 @pytest.mark.parametrize("filter", FILTERS)
