@@ -75,6 +75,21 @@ def test_the_quotations_of_a_page_exist(page: str, directive: str, file: str, op
             rest = found + rest
 
 
+@pytest.mark.parametrize(
+    ("page", "directive", "file", "options"), [quote for quote in QUOTES if ":dedent:" in quote[3]]
+)
+def test_quoted_lines_have_the_indent_that_is_taken_from_them(
+    page: str, directive: str, file: str, options: str
+) -> None:
+    lines = ((DOCS / page).parent / file).read_text(encoding="utf-8").splitlines()
+    markers = {kind: marker.strip('"') for kind, marker in MARKER.findall(options)}
+    first = next(number for number, line in enumerate(lines) if markers.get("start-at", "") in line)
+    last = next((n for n in range(first, len(lines)) if "end-at" in markers and markers["end-at"] in lines[n]), first)
+    width = int(re.search(r":dedent: (\d+)", options)[1])  # type: ignore[index]
+    for line in lines[first : last + 1]:
+        assert not line[:width].strip(), f"docs/{page} quotes '{line}' of {file}, which is not indented by {width}"
+
+
 def test_pages_quote_each_modules_shader() -> None:
     for name, module in MODULES.items():
         assert any(
