@@ -14,9 +14,12 @@ RUN = "import sys; sys.argv = ['aolab', *{!r}]; from aolab.shell.cli import main
 HELP = [(), *((name,) for name in COMMANDS), *(("exercise", name) for name in EXERCISES)]
 
 
-def test_the_installed_command_is_this_one():
+def test_the_installed_command_is_this_one(monkeypatch):
     (script,) = (point for point in entry_points(group="console_scripts") if point.name == "aolab")
-    assert script.load() is cli.main
+    ran = []
+    monkeypatch.setattr(cli, "main", lambda imported: ran.append(imported()))
+    script.load()()
+    assert len(ran) == 1
 
 
 @pytest.mark.parametrize("command", HELP)
