@@ -28,7 +28,7 @@ MOVED := $(if $(filter $(shell pwd),$(shell cat $(RUNTIME) 2>/dev/null)),,moved)
 help:
 	@echo 'make demo       set up, then render every module into out/demo.png: 10 seconds after the set-up'
 	@echo 'make quick      format, lint, and the tests that are not slow: 4 minutes on two cores'
-	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 6 minutes on two cores'
+	@echo 'make test       format, lint, types, all tests, those of OpenGL again limited to 3.3: 5 minutes on two cores'
 	@echo 'make long       the long tests: programs, notebooks, a browser, clusters, exercises, the installed wheel: 8 minutes'
 	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 5 minutes on two cores'
 	@echo 'make fuzz       load 900 damaged files of 18 kinds: 2 minutes'
