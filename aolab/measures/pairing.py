@@ -14,12 +14,8 @@ from .regions import BORDER_SHARE, border, projected_px, silhouettes, thin_occlu
 Buffers = Frame | Mapping[str, np.ndarray]
 Pairs = dict[str, tuple[np.ndarray, np.ndarray]]
 
-SURFACES = (
-    "viewZ",
-    "viewNormal",
-    "facetNormal",
-    "albedo",
-)  # equal in a render and its reference: compared on request only
+# equal in a render and its reference: compared on request only
+SURFACES = ("viewZ", "viewNormal", "facetNormal", "albedo")
 _HARMONICS = ("sh0", "sh1", "sh2", "sh3")  # four coefficients each; together they are `sh`, and its bands
 _BAND_OF = np.repeat([0, 1, 2, 3], [1, 3, 5, 7])
 

@@ -19,5 +19,12 @@ class Marched(Module):
     falloff: Falloff = 0.3
     thickness: Thickness = 0.9
 
+    def _background(self, stated: type[Module], value: float) -> dict[str, float]:
+        """The `background` of the pass with the shader of the class `stated`, where it writes `value`.
+
+        Nothing for a subclass with another shader, which may write other values.
+        """
+        return dict.fromkeys(self.outputs, value) if self.shader == stated.shader else {}
+
     def samples(self, seed: int) -> dict[str, bytes]:
         return {"kernel": cosine_hemisphere(self.directions, seed, self.falloff).tobytes()}

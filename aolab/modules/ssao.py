@@ -24,6 +24,4 @@ class SSAO(Marched):
     )
 
     def passes(self) -> list[Pass]:
-        passes = super().passes()
-        own = self.shader == SSAO.shader  # a shader of a subclass may write other values
-        return [replace(one, background={"visibility": 1.0}) for one in passes] if own else passes
+        return [replace(one, background=self._background(SSAO, 1.0)) for one in super().passes()]

@@ -64,7 +64,7 @@ class SSBN(Marched):
     )
 
     def passes(self) -> list[Pass]:
-        return [Pass("ssbn", self.shader, self.outputs, self._weights, background=dict.fromkeys(self.outputs, 0.0))]
+        return [Pass("ssbn", self.shader, self.outputs, self._weights, background=self._background(SSBN, 0.0))]
 
     @property
     def _weights(self) -> dict[str, bool | int]:

@@ -60,7 +60,11 @@ def test_a_subclass_with_its_own_shader_decides_about_the_background(lab):
     class Half(aolab.SSAO):
         shader = "out float visibility; void main() { visibility = 0.5; }"
 
+    class Quarter(aolab.SSBN):
+        shader = "out vec4 blocked_direction; void main() { blocked_direction = vec4(0.25); }"
+
     np.testing.assert_array_equal(lab.render(scene(), Half(), size=SIZE).channels("visibility"), 0.5)
+    np.testing.assert_array_equal(lab.render(scene(), Quarter(), size=SIZE).channels("blocked_direction"), 0.25)
 
 
 @pytest.mark.parametrize("far", [None, 5.0])

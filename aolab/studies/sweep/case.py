@@ -225,13 +225,13 @@ KEPT = {"shadows", "reflective shadow maps", "voxels"}  # passes whose result th
 _computed: set[tuple[Any, ...]] = set()
 
 
-def _is_first(case: Case) -> bool:
-    """Is the case this process's first of its scene, module and words?
+def _is_first(frame: Frame, case: Case) -> bool:
+    """Is the case this process's first of its scene, module and words? `frame` is the case's.
 
     A driver may compile a program again in such a case: for another format of a texture, say.
     """
-    words = [value for value in case_module(case).values().values() if isinstance(value, str)]
-    kind = (case.columns["scene"], module_name(case.module), *words)
+    words = [value for value in frame.info["parameters"].values() if isinstance(value, str)]
+    kind = (case.columns["scene"], frame.info["module"], *words)
     first = kind not in _computed
     _computed.add(kind)
     return first
@@ -261,7 +261,7 @@ def run(case: Case, settings: Settings, name: str = "") -> tuple[dict[str, Any],
             record |= measure(frame, truth, settings.measures)
             files = _files(frame, settings, name)
             compiled = shared_lab().programs_compiled > programs
-            if _is_first(case) or compiled or not KEPT.isdisjoint(frame.timings):
+            if _is_first(frame, case) or compiled or not KEPT.isdisjoint(frame.timings):
                 frame = _warm(frame, case)
         outcome = {
             "ms": sum(frame.timings.values()),
