@@ -30,6 +30,8 @@ WATER, LEAVES = Material((0.10, 0.30, 0.33), name="water"), Material((0.12, 0.26
 DADO_RED = Material((0.40, 0.11, 0.06), name="dado")
 CLOTH = tuple(Material(rgb, name="cloth") for rgb in ((0.50, 0.03, 0.03), (0.04, 0.22, 0.07), (0.03, 0.08, 0.36)))
 
+SKY = Environment.sky((0.17, 0.34, 0.75), (0.46, 0.43, 0.40), (0.26, 0.19, 0.12))
+
 # fmt: off
 # sections: distance from the columns' line towards the court, height
 BACK = -AISLE - 0.1
@@ -55,9 +57,8 @@ def atrium(detail: int = 2, sun_elevation: float = 62.0, sun_azimuth: float = 58
     elevation, azimuth = np.radians((sun_elevation, sun_azimuth))
     towards = np.array((np.cos(elevation) * np.cos(azimuth), np.sin(elevation), np.cos(elevation) * np.sin(azimuth)))
     sun = DirectionalLight(tuple(-towards), (6.6, 5.0, 3.1))
-    sky = Environment.sky((0.17, 0.34, 0.75), (0.46, 0.43, 0.40), (0.26, 0.19, 0.12))
     camera = Camera((-11.3, 2.7, 1.5), (0, 3.65, -0.55), fov=58, near=0.1)
-    return Scene(_building(detail), (sun,), sky, camera, name="atrium")
+    return Scene(_building(detail), (sun,), SKY, camera, name="atrium")
 
 
 @cache

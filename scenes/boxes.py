@@ -24,7 +24,11 @@ def boxes(swap: bool = False, light: float = 1.0, ambient: float = 1.0) -> Scene
         for side, color in ((-1, left), (1, right))
     )
     return Scene(
-        _still_life(), lamps, _glow(ambient, left, right), Camera((0, 2.7, 6.6), (0, 0.72, 0), fov=31), name="boxes"
+        _still_life(),
+        lamps,
+        _glow(ambient, tuple(left), tuple(right)),
+        Camera((0, 2.7, 6.6), (0, 0.72, 0), fov=31),
+        name="boxes",
     )
 
 
@@ -56,7 +60,8 @@ def _backdrop(width: float = 16.0, thickness: float = 0.2) -> Mesh:
     return loft(np.array(rings), PAPER, "backdrop")
 
 
-def _glow(strength: float, left: np.ndarray, right: np.ndarray) -> Environment:
+@cache
+def _glow(strength: float, left: tuple[float, ...], right: tuple[float, ...]) -> Environment:
     """A dim grey environment with a wide soft box for each lamp, for methods that read the environment's light."""
     azimuth = 2 * np.pi * ((np.arange(128) + 0.5) / 128 - 0.5)
     polar = np.pi * (np.arange(64) + 0.5) / 64

@@ -15,6 +15,7 @@ from aolab.scene.shapes import block, in_range, lathe, placed
 TABLE = Material((0.62, 0.5, 0.38), name="wood")
 COPPER, SILVER = Material((0.72, 0.4, 0.24), name="copper"), Material((0.62, 0.62, 0.6), name="silver")
 GLAZE = Material((0.12, 0.3, 0.6), name="glaze")
+SKY = Environment.sky(zenith=(0.25, 0.3, 0.4), horizon=(0.5, 0.52, 0.55), ground=(0.2, 0.18, 0.15))
 SIZE, THICKNESS = 50.0, 0.2  # side of the table; a coin's thickness
 # x, z, coins one above the other, silver or copper
 PILES = ((-2.6, -1.4, 7, True), (0.4, -2.2, 3, False), (2.9, -0.6, 5, True), (-0.9, 1.2, 1, False), (1.6, 1.9, 1, True),
@@ -26,9 +27,8 @@ def coins(sun_elevation: float = 28.0, count: int = len(PILES)) -> Scene:
     in_range("coins", sun_elevation=(sun_elevation, 5, 90), count=(count, 1, len(PILES)))
     angle = np.radians(sun_elevation)
     sun = DirectionalLight((np.cos(angle), -np.sin(angle), 0.25 * np.cos(angle)), (3.2, 2.9, 2.4))
-    sky = Environment.sky(zenith=(0.25, 0.3, 0.4), horizon=(0.5, 0.52, 0.55), ground=(0.2, 0.18, 0.15))
     camera = Camera((1.0, 7.5, 13.0), (0.2, 0.1, 0.7), fov=38)
-    return Scene(_table(count), (sun,), sky, camera, name="coins")
+    return Scene(_table(count), (sun,), SKY, camera, name="coins")
 
 
 @cache

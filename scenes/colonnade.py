@@ -19,6 +19,7 @@ BEHIND = 1.6  # times the distance. The front shaft's least radius (0.84) × 1.6
 MARBLE = Material((0.78, 0.74, 0.67), name="marble")
 PAVING = Material((0.62, 0.57, 0.50), name="paving")
 PINK = Material((0.84, 0.16, 0.40), name="pink")
+SEA = Environment.sky((0.10, 0.20, 0.44), (0.40, 0.47, 0.54), (0.07, 0.13, 0.18))
 
 
 def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0, fluted: bool = True) -> Scene:
@@ -27,9 +28,8 @@ def colonnade(count: int = 7, hidden: bool = True, sun_elevation: float = 34.0, 
     elevation, azimuth = np.radians((sun_elevation, -125))  # from behind the camera, to its left
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
     sun = DirectionalLight(tuple(-np.array(towards)), (3.1, 2.25, 1.4))
-    sea = Environment.sky((0.10, 0.20, 0.44), (0.40, 0.47, 0.54), (0.07, 0.13, 0.18))
     instances = _temple(count, fluted) + ((_pink(fluted),) if hidden else ())
-    return Scene(instances, (sun,), sea, Camera(tuple(EYE), (-1.75, 2.05, 0), fov=49), name="colonnade")
+    return Scene(instances, (sun,), SEA, Camera(tuple(EYE), (-1.75, 2.05, 0), fov=49), name="colonnade")
 
 
 @cache

@@ -68,6 +68,7 @@ def _standing(corners: tuple[tuple[float, float], ...], height: float, name: str
     return loft(np.array([ring(outline, -0.01), ring(outline, height)]), WHITE, name)
 
 
+@cache
 def _front(strength: float) -> Environment:
     """An environment with a soft bright window in front (+z), which lights the room, and a dim rest."""
     azimuth = 2 * np.pi * ((np.arange(64) + 0.5) / 64 - 0.5)

@@ -15,16 +15,16 @@ from aolab.scene.shapes import block, column, in_range, placed
 WIDTH, HEIGHT, DEEP = 4.0, 2.25, 0.09  # of the wall; of the relief
 TEXELS = 256  # of the map, in u; the carved wall has as many quads
 STONE = (0.6, 0.3, 0.3)  # "The average albedo of the texture of the carved object", section 6
+SKY = Environment.sky(zenith=(0.5, 0.55, 0.62), horizon=(0.75, 0.75, 0.72), ground=(0.3, 0.27, 0.24))
 
 
 def relief(depth: float = 1.0, carved: bool = False) -> Scene:
     in_range("relief", depth=(depth, 0, 4))
     ground = Instance(block((12.0, 0.3, 8.0), Material((0.5, 0.45, 0.4)), "ground"), placed(0, -0.3, 2.0))
     stones = [Instance(_column(), placed(x, -0.01, 0.55)) for x in (-1.35, 1.35)]
-    sky = Environment.sky(zenith=(0.5, 0.55, 0.62), horizon=(0.75, 0.75, 0.72), ground=(0.3, 0.27, 0.24))
     sun = DirectionalLight((0.8, -0.7, -0.9), (0.9, 0.85, 0.75))
     camera = Camera((0.9, 1.5, 3.4), (0, 1.05, 0), fov=44)
-    return Scene((Instance(_wall(depth, carved)), ground, *stones), (sun,), sky, camera, name="relief")
+    return Scene((Instance(_wall(depth, carved)), ground, *stones), (sun,), SKY, camera, name="relief")
 
 
 @cache

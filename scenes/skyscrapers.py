@@ -17,6 +17,7 @@ BLOCK, STREET, STOREY = 2.0, 0.8, 0.34
 GLASS = (0.62, 0.68, 0.76)  # factor on the wall's albedo
 WALLS = ((0.72, 0.70, 0.66), (0.62, 0.60, 0.57), (0.70, 0.63, 0.54), (0.55, 0.57, 0.60), (0.66, 0.52, 0.44))
 ASPHALT, PAVEMENT = Material((0.30, 0.30, 0.31), name="asphalt"), Material((0.56, 0.55, 0.53), name="pavement")
+SKY = Environment.sky((0.08, 0.18, 0.50), (0.36, 0.50, 0.74), (0.24, 0.33, 0.48))
 
 
 def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun_azimuth: float = 82.0) -> Scene:
@@ -26,10 +27,9 @@ def skyscrapers(seed: int = 7, blocks: int = 8, sun_elevation: float = 30.0, sun
     elevation, azimuth = np.radians((sun_elevation, sun_azimuth))
     towards = (np.cos(elevation) * np.sin(azimuth), np.sin(elevation), -np.cos(elevation) * np.cos(azimuth))
     sun = DirectionalLight(tuple(-np.array(towards)), (4.9, 3.4, 1.4))
-    sky = Environment.sky((0.08, 0.18, 0.50), (0.36, 0.50, 0.74), (0.24, 0.33, 0.48))
     side = blocks * (BLOCK + STREET)
     camera = Camera((0.46 * side, 0.29 * side, 0.58 * side), (-0.02 * side, 0.085 * side, -0.02 * side), fov=34)
-    return Scene(_city(seed, blocks), (sun,), sky, camera, name="skyscrapers")
+    return Scene(_city(seed, blocks), (sun,), SKY, camera, name="skyscrapers")
 
 
 @cache

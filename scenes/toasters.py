@@ -18,16 +18,16 @@ CHROME, BAKELITE = Material((0.62, 0.63, 0.65), name="chrome"), Material((0.05, 
 CRUST, CRUMB = Material((0.42, 0.20, 0.06), name="crust"), Material((0.80, 0.60, 0.32), name="crumb")
 TILES = (Material((0.62, 0.59, 0.53), name="pale tile"), Material((0.20, 0.27, 0.27), name="dark tile"))
 WALL = Material((0.62, 0.50, 0.36), name="wall")
+DAYLIGHT = Environment.sky((0.34, 0.40, 0.50), (0.40, 0.40, 0.41), (0.20, 0.17, 0.14))
 
 
 def toasters(time: float = 0.62, count: int = 5) -> Scene:
     """`count` toasters at any `time`, in seconds."""
     in_range("toasters", time=(time, -1e6, 1e6), count=(count, 1, 10))
     sun = DirectionalLight((0.55, -1.0, -0.5), (3.0, 2.5, 1.9))
-    kitchen = Environment.sky((0.34, 0.40, 0.50), (0.40, 0.40, 0.41), (0.20, 0.17, 0.14))
     instances = [instance for number in range(count) for instance in _toaster(number, count, time)]
     camera = Camera((0.9, 4.1, 7.5), (0, 0.62, 0), fov=34, near=0.1)
-    return Scene((*_kitchen(), *instances), (sun,), kitchen, camera, name="toasters")
+    return Scene((*_kitchen(), *instances), (sun,), DAYLIGHT, camera, name="toasters")
 
 
 def _toaster(number: int, count: int, time: float) -> list[Instance]:

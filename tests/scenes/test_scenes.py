@@ -93,8 +93,10 @@ def test_albedo_is_in_the_range_of_real_surfaces(name, scenes):
 
 
 @names
-def test_loading_again_uses_the_same_meshes(name, scenes):
-    assert meshes(aolab.load(name)) == meshes(scenes[name])
+def test_loading_again_uses_the_same_meshes_and_environment(name, scenes):
+    again = aolab.load(name)
+    assert meshes(again) == meshes(scenes[name])
+    assert again.environment is scenes[name].environment  # the tables that methods make of it stay on the GPU
 
 
 @names
