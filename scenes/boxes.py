@@ -5,7 +5,7 @@ crease to the same grey; directional occlusion keeps a crease pink if only the p
 are symmetric about the plane x = 0. Swapping the lights therefore mirrors the picture, which is an exact test.
 """
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -60,7 +60,7 @@ def _backdrop(width: float = 16.0, thickness: float = 0.2) -> Mesh:
     return loft(np.array(rings), PAPER, "backdrop")
 
 
-@cache
+@lru_cache(8)  # a sweep of its strength has many
 def _glow(strength: float, left: tuple[float, ...], right: tuple[float, ...]) -> Environment:
     """A dim grey environment with a wide soft box for each lamp, for methods that read the environment's light."""
     azimuth = 2 * np.pi * ((np.arange(128) + 0.5) / 128 - 0.5)
