@@ -8,6 +8,8 @@ are measured in world space, to the nearest other maximum of the same axis direc
 
 import numpy as np
 
+from .connected import connected
+
 AXES = np.concatenate([np.eye(3), -np.eye(3)])
 FLAT = 1e-6  # of the mesh's extent: points whose heights differ by less form one plateau
 BRUTE_FORCE = 512  # points: fewer points are compared pair by pair, because importing SciPy's trees takes 0.2 s
@@ -27,7 +29,7 @@ def local_maxima(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
         np.maximum.at(highest, edges[:, 1], height[edges[:, 0]])
         top = height >= highest - flat
         level = edges[np.abs(height[edges[:, 0]] - height[edges[:, 1]]) <= flat]
-        plateau = _connected(len(points), level[top[level].any(axis=1)])
+        plateau = connected(len(points), level[top[level].any(axis=1)])
         # a plateau with a higher neighbour at any of its points is a terrace, not a maximum
         whole = np.ones(len(points), bool)
         np.logical_and.at(whole, plateau, top)
@@ -38,18 +40,6 @@ def local_maxima(points: np.ndarray, edges: np.ndarray) -> tuple[np.ndarray, np.
         maxima.append(centres / count[:, None])
         axes.append(np.full(len(count), number))
     return np.concatenate(maxima), np.concatenate(axes)
-
-
-def _connected(count: int, edges: np.ndarray) -> np.ndarray:
-    """(count,): for each point the least index in its connected component. Labels spread until none changes."""
-    label = np.arange(count)
-    while True:
-        before = label.copy()
-        np.minimum.at(label, edges[:, 0], before[edges[:, 1]])
-        np.minimum.at(label, edges[:, 1], before[edges[:, 0]])
-        label = label[label]  # pointer jumping: fewer rounds
-        if (label == before).all():
-            return label
 
 
 def mean_nearest_distance(points: np.ndarray) -> float | None:

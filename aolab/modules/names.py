@@ -26,7 +26,8 @@ OWNERS: dict[str, tuple[str, ...]] = {
     "the samples": ("kernel", "rsm_kernel", "line_start"),
     "the mesh": (
         "base_color", "alpha_cutoff", "blended", "mesh_number", "single_sided", "emission", "one_sided", "cut_outs",
-        "normal_scale", "normal_mapped", "relief_number", "bent_normals", "is_smooth", "has_shares",
+        "textured", "vertex_colored", "normal_scale", "normal_mapped", "relief_number", "bent_normals", "is_smooth",
+        "has_shares",
     ),
     "the reliefs": ("reliefs", "relief_region", "relief_wrap"),
     "the last frame": ("has_last", "last_from_view", "last_pixel_from_ray"),

@@ -1,7 +1,7 @@
 """Meshes and their textures on the GPU, kept for as long as the mesh lives."""
 
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import moderngl
@@ -11,8 +11,10 @@ from ..gl import context
 from ..gl.program import Program
 from ..gl.source import Constant
 from ..gl.texture import refuse_exhaustion
+from ..scene.clipping import with_hidden_backs
 from ..scene.mesh import Mesh, Texture
 from ..scene.scene import Scene
+from ..scene.view import View
 from .reliefs import ReliefStore
 from .textures import upload
 
@@ -31,38 +33,52 @@ MESH_UNIFORMS: dict[str, object] = {
     "is_smooth": False,
 }
 ATTRIBUTES = "local_position", "local_normal", "texture_uv", "vertex_color", "vertex_visibility"
+INSTANCE_BYTES = 17 * 4  # world_from_local 16f, number 1f
 MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1, "normal_texture": 2}  # of each mesh in turn, by their units
 
 
 def kinds_of(scene: Scene) -> dict[str, Constant]:
-    """Constants: whether some mesh is single-sided, has holes or is blended, or has a map of normals or heights.
+    """Constants: whether some mesh is single-sided, has holes or is blended, and so on.
 
-    Most scenes have none of them, and their shaders are spared the tests.
+    Most scenes have few of these, and their shaders are spared the rest.
     """
-    materials = [instance.mesh.material for instance in scene.instances]
+    meshes = {instance.mesh for instance in scene.instances}
     return {
-        "one_sided": any(not material.double_sided for material in materials),
-        "cut_outs": any(material.blend or material.alpha_cutoff is not None for material in materials),
+        "one_sided": any(not mesh.material.double_sided for mesh in meshes),
+        "cut_outs": any(mesh.material.has_holes for mesh in meshes),
         "bent_normals": scene.bends_normals,
+        "textured": any(mesh.material.texture is not None for mesh in meshes),
+        "vertex_colored": any(mesh.colors is not None for mesh in meshes),
     }
+
+
+@dataclass
+class _Group:
+    """Instances of a mesh that are drawn together: the mirrored ones, or the others."""
+
+    instances: moderngl.Buffer  # INSTANCE_BYTES each
+    placement: bytes
+    arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)  # by program
 
 
 @dataclass
 class _GpuMesh:
     attributes: moderngl.Buffer  # position 3f, normal 3f, uv 2f, colour 4f, baked visibility 1f
     indices: moderngl.Buffer
-    instances: moderngl.Buffer  # world_from_local 16f, number 1f
-    placement: bytes
     tangents: moderngl.Buffer | None = None  # 4f; made when a program reads them
-    arrays: dict[int, moderngl.VertexArray] = field(default_factory=dict)  # by program
+    groups: dict[bool, _Group] = field(default_factory=dict)  # by whether they are mirrored
 
 
-def _placements(world_from_local: Sequence[np.ndarray], scene: Scene) -> bytes:
-    """Of each instance: the matrix as GLSL stores it, column by column, in the world of the shaders; and its number."""
+def _placements(world_from_local: Sequence[np.ndarray], scene: Scene) -> dict[bool, bytes]:
+    """{mirrored: the instances}. Of each instance: the matrix as GLSL stores it, column by column, in the world of the
+    shaders; and its number.
+    """
     placed = np.array(world_from_local)
     placed[:, :3, 3] -= scene.shader_origin
     columns = placed.transpose(0, 2, 1).reshape(-1, 16)
-    return np.column_stack([columns, np.arange(len(columns))]).astype(np.float32).tobytes()
+    rows = np.column_stack([columns, np.arange(len(columns))]).astype(np.float32)
+    mirrored = np.linalg.det(placed[:, :3, :3]) < 0
+    return {side: rows[mirrored == side].tobytes() for side in (False, True) if (mirrored == side).any()}
 
 
 class Geometry:
@@ -73,37 +89,59 @@ class Geometry:
         self._textures: weakref.WeakKeyDictionary[Texture, dict[object, moderngl.Texture]]
         self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut, and of numbers
         self._white: moderngl.Texture | None = None
-        self._scenes: weakref.WeakKeyDictionary[Scene, Mapping[Mesh, tuple[int, bytes]]]
+        self._scenes: weakref.WeakKeyDictionary[Scene, Mapping[Mesh, Mapping[bool, bytes]]]
         self._scenes = weakref.WeakKeyDictionary()
+        self._seen: tuple[Scene, View, Collection[Mesh]] | None = None
         self.reliefs = ReliefStore()
 
-    def draw(self, scene: Scene, program: Program) -> None:
-        """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`."""
-        for number, (mesh, (count, placement)) in enumerate(self._placed(scene).items()):
-            gpu = self._place(mesh, placement)
-            self._use_material(mesh, number, program, scene)
-            self._array(mesh, gpu, program).render(instances=count)
+    def draw(self, scene: Scene, program: Program, seen_from: View | None = None) -> None:
+        """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`.
 
-    def _placed(self, scene: Scene) -> Mapping[Mesh, tuple[int, bytes]]:
-        """{mesh: its instances' count and placements}, kept for as long as the scene lives."""
+        Backs of solids that the view `seen_from` cannot see are left out.
+        """
+        gl, without_backs = context.get(), self._without_backs(scene, seen_from) if seen_from else ()
+        for number, (mesh, placements) in enumerate(self._placed(scene).items()):
+            gpu = self._of(mesh)
+            self._use_material(mesh, number, program, scene)
+            if mesh in without_backs:
+                gl.enable(moderngl.CULL_FACE)
+            for mirrored, placement in placements.items():
+                gl.cull_face = "front" if mirrored else "back"
+                group = self._group(gpu, mirrored, placement)
+                self._array(mesh, gpu, group, program).render(instances=len(placement) // INSTANCE_BYTES)
+            gl.disable(moderngl.CULL_FACE)
+
+    def _without_backs(self, scene: Scene, view: View) -> Collection[Mesh]:
+        """The meshes whose backs the view cannot see, kept for a still camera."""
+        if self._seen is None or self._seen[0] is not scene or self._seen[1] is not view:
+            self._seen = scene, view, frozenset(with_hidden_backs(scene, view))
+        return self._seen[2]
+
+    def _placed(self, scene: Scene) -> Mapping[Mesh, Mapping[bool, bytes]]:
+        """{mesh: {mirrored: the placements of its instances}}, kept for as long as the scene lives."""
         if scene not in self._scenes:
             groups: dict[Mesh, list[np.ndarray]] = {}
             for instance in scene.instances:
                 groups.setdefault(instance.mesh, []).append(instance.world_from_local)
-            self._scenes[scene] = {mesh: (len(some), _placements(some, scene)) for mesh, some in groups.items()}
+            self._scenes[scene] = {mesh: _placements(some, scene) for mesh, some in groups.items()}
         return self._scenes[scene]
 
-    def _place(self, mesh: Mesh, placement: bytes) -> _GpuMesh:
-        gpu = self._meshes.get(mesh)
-        if gpu is None:
-            gpu = self._meshes[mesh] = self._upload(mesh, placement)
-        elif gpu.placement != placement:
-            gpu.instances.orphan(len(placement))
-            gpu.instances.write(placement)
-            gpu.placement = placement
-        return gpu
+    def _group(self, gpu: _GpuMesh, mirrored: bool, placement: bytes) -> _Group:
+        group = gpu.groups.get(mirrored)
+        if group is None:
+            group = gpu.groups[mirrored] = _Group(context.get().buffer(placement), placement)
+        elif group.placement != placement:
+            group.instances.orphan(len(placement))
+            group.instances.write(placement)
+            group.placement = placement
+        return group
 
-    def _upload(self, mesh: Mesh, placement: bytes) -> _GpuMesh:
+    def _of(self, mesh: Mesh) -> _GpuMesh:
+        if mesh not in self._meshes:
+            self._meshes[mesh] = self._upload(mesh)
+        return self._meshes[mesh]
+
+    def _upload(self, mesh: Mesh) -> _GpuMesh:
         gl = context.get()
         assert mesh.normals is not None  # Mesh makes them
         count = len(mesh.vertices)
@@ -111,24 +149,24 @@ class Geometry:
         colors = np.ones((count, 4), np.float32) if mesh.colors is None else mesh.colors
         baked = np.ones((count, 1), np.float32) if mesh.visibility is None else mesh.visibility
         interleaved = np.concatenate([mesh.vertices, mesh.normals, uv, colors, baked], axis=1, dtype=np.float32)
-        gpu = _GpuMesh(gl.buffer(interleaved), gl.buffer(mesh.faces), gl.buffer(placement), placement)
+        gpu = _GpuMesh(gl.buffer(interleaved), gl.buffer(mesh.faces))
         refuse_exhaustion(f"mesh '{mesh.name}' of {interleaved.nbytes / 1e6:.0f} MB")
         return gpu
 
-    def _array(self, mesh: Mesh, gpu: _GpuMesh, program: Program) -> moderngl.VertexArray:
+    def _array(self, mesh: Mesh, gpu: _GpuMesh, group: _Group, program: Program) -> moderngl.VertexArray:
         key = program.gl.glo
-        if key not in gpu.arrays:
+        if key not in group.arrays:
             content = [
                 (gpu.attributes, "3f 3f 2f 4f 1f", *ATTRIBUTES),
-                (gpu.instances, "16f 1f/i", "world_from_local", "instance_number"),
+                (group.instances, "16f 1f/i", "world_from_local", "instance_number"),
             ]
             if "local_tangent" in program.gl:
                 if gpu.tangents is None:
                     tangents = np.zeros((len(mesh.vertices), 4)) if mesh.tangents is None else mesh.tangents
                     gpu.tangents = context.get().buffer(tangents.astype(np.float32))
                 content.append((gpu.tangents, "4f", "local_tangent"))
-            gpu.arrays[key] = context.get().vertex_array(program.gl, content, gpu.indices, skip_errors=True)
-        return gpu.arrays[key]
+            group.arrays[key] = context.get().vertex_array(program.gl, content, gpu.indices, skip_errors=True)
+        return group.arrays[key]
 
     def _use_material(self, mesh: Mesh, number: int, program: Program, scene: Scene) -> None:
         material = mesh.material

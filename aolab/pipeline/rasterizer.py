@@ -58,7 +58,7 @@ class Rasterizer:
         """
         step = g_buffer(name, self._needed(formats), atlas=len(views) > 1)
         with raw.depth_up_to(FARTHEST):
-            return with_facets(self.triangles(step, views, depth=depth))
+            return with_facets(self.triangles(step, views, depth=depth, skip_backs=True))
 
     def _needed(self, formats: Mapping[str, str]) -> Mapping[str, str]:
         """The formats, and those of buffers that this scene needs besides.
@@ -123,8 +123,12 @@ class Rasterizer:
         viewpoints: Sequence[Viewpoint],
         bindings: Iterable[Bindings] = (),
         depth: Depth | None = None,
+        skip_backs: bool = False,
     ) -> Buffers:
-        """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one."""
+        """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one.
+
+        With `skip_backs`, backs that are hidden behind the fronts of their solid are left out.
+        """
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
         mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
@@ -152,7 +156,8 @@ class Rasterizer:
                     program.set(one.uniforms)
                     framebuffer.viewport = viewpoint.region
                     framebuffer.use()
-                    self.geometry.draw(self.scene, program)
+                    seen_from = viewpoint if skip_backs and isinstance(viewpoint, View) else None
+                    self.geometry.draw(self.scene, program, seen_from)
             gl.enable_only(moderngl.NOTHING)
         return targets
 

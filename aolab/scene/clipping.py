@@ -41,8 +41,7 @@ def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
 def nearest_surface(scene: Scene, point: np.ndarray, limit: float) -> float | None:
     """The distance from `point` (3,) to the nearest triangle of the scene; None if it is over `limit`."""
     centres, halves, owners = [], [], []
-    low, high = scene.instance_bounds.transpose(1, 0, 2)
-    for number in np.flatnonzero(to_boxes(point, (low + high) / 2, (high - low) / 2) < limit).tolist():
+    for number in np.flatnonzero(to_boxes(point, *scene.instance_boxes) < limit).tolist():
         instance = scene.instances[number]
         boxes = instance.mesh.chunk_bounds  # (c, 2, 3)
         linear = np.abs(instance.world_from_local[:3, :3])
@@ -109,6 +108,20 @@ def reason_of_cut(scene: Scene, view: View) -> str:
     if camera.far is not None and (names := _parts(scene, view, [(0, 0, -1, -far)])):
         told.append(f"the camera's far plane, far = {far:g}, cuts away parts of {', '.join(names)}")
     return "; ".join(told)
+
+
+def with_hidden_backs(scene: Scene, view: View) -> list[Mesh]:
+    """The meshes whose backs the view cannot see: opaque solids that hold neither its eye nor a part of its near plane.
+
+    A solid's bounds stand for the solid.
+    """
+    near = view.camera.clip_planes(view.bounds)[0]
+    if view.camera.ortho is None:
+        centres, halves = scene.instance_boxes
+        beyond = to_boxes(np.asarray(view.camera.eye), centres, halves) > near * _slant(view.camera, view.size)
+    else:
+        beyond = np.array([_distances(view.camera, bounds).min() > near for bounds in scene.instance_bounds])
+    return [mesh for mesh, numbers in scene.opaque_solids.items() if beyond[numbers].all()]
 
 
 def _is_near(scene: Scene, view: View) -> bool:

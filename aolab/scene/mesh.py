@@ -8,6 +8,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from ..errors import Notice, SceneError
+from ..maths.connected import connected
 from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
 from ..maths.tangents import mikktspace
@@ -114,6 +115,11 @@ class Material:
     def bends_normals(self) -> bool:
         """Whether a texture changes the normals of the vertices."""
         return self.normal_texture is not None or self.height is not None
+
+    @property
+    def has_holes(self) -> bool:
+        """Whether points of the surface may be missing, by their alpha."""
+        return self.blend or self.alpha_cutoff is not None
 
 
 def _array(value: object, columns: tuple[int, ...], dtype: type, what: str) -> np.ndarray:
@@ -250,24 +256,36 @@ class Mesh:
 
     @cached_property
     def welded(self) -> tuple[np.ndarray, np.ndarray]:
-        """The mesh with vertices at one place as one: points (P, 3), and the triangles' edges (3 F, 2) between them."""
+        """The mesh with vertices at one place as one: points (P, 3), and the triangles' edges (3 F, 2) between them.
+
+        An edge leads from corner to corner in the order of its triangle. Rows n, n + F, n + 2 F belong to triangle n.
+        """
         points, point = np.unique(self.vertices, axis=0, return_inverse=True)
         corners = point.reshape(-1)[self.faces]
         edges = np.concatenate([corners[:, (0, 1)], corners[:, (1, 2)], corners[:, (2, 0)]])
-        return points.astype(np.float64), np.sort(edges, axis=1)
+        return points.astype(np.float64), edges
 
     @cached_property
     def is_closed(self) -> bool:
         """Whether every edge joins two triangles (or four, ...): the mesh bounds a solid."""
         points, edges = self.welded
-        _, uses = np.unique(edges[:, 0].astype(np.int64) * len(points) + edges[:, 1], return_counts=True)
+        _, uses = np.unique(_numbers(np.sort(edges, axis=1), len(points)), return_counts=True)
         return bool((uses % 2 == 0).all())
 
     @cached_property
     def is_solid(self) -> bool:
-        """Whether the mesh is closed, with the fronts of its triangles outside: its corners run counterclockwise."""
+        """Whether each part of the mesh is closed, with the fronts of its triangles outside, counterclockwise.
+
+        A ray from outside meets a front first. Triangles that share a point belong to one part.
+        """
+        points, edges = self.welded
+        forth, back = _numbers(edges, len(points)), _numbers(edges[:, ::-1], len(points))
+        if not np.array_equal(np.sort(forth), np.sort(back)):  # of two triangles at an edge, one runs forth, one back
+            return False
+        part = connected(len(points), edges)[edges[: len(self.faces), 0]]
         a, b, c = np.moveaxis(self.vertices.astype(np.float64)[self.faces] - self.bounds.mean(axis=0), 1, 0)
-        return float((np.cross(a, b) * c).sum()) > 0 and self.is_closed
+        volumes = np.bincount(part, (np.cross(a, b) * c).sum(axis=1))
+        return bool((volumes[np.unique(part)] > 0).all())
 
     @cached_property
     def local_maxima(self) -> tuple[np.ndarray, np.ndarray]:
@@ -310,3 +328,8 @@ class Mesh:
                 f"{what}: dropped {dropped} of {len(faces)} triangles, degenerate (no area)", Notice, stacklevel=4
             )
         return faces[keep]
+
+
+def _numbers(edges: np.ndarray, count: int) -> np.ndarray:
+    """(E,): a number for each of the `edges` (E, 2) between `count` points; equal edges have equal numbers."""
+    return edges[:, 0].astype(np.int64) * count + edges[:, 1]

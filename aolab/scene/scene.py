@@ -141,6 +141,21 @@ class Scene:
         return np.array([instance.bounds for instance in self.instances])
 
     @cached_property
+    def instance_boxes(self) -> tuple[np.ndarray, np.ndarray]:
+        """The centres and the halves of the sides of the instances' bounds, (instances, 3) float64 each."""
+        low, high = self.instance_bounds.transpose(1, 0, 2)
+        return (low + high) / 2, (high - low) / 2
+
+    @cached_property
+    def opaque_solids(self) -> dict[Mesh, np.ndarray]:
+        """{mesh: its instances' numbers} of solids without holes: from outside, nobody sees their backs."""
+        numbers: dict[Mesh, list[int]] = {}
+        for number, instance in enumerate(self.instances):
+            numbers.setdefault(instance.mesh, []).append(number)
+        solids = [mesh for mesh in numbers if not mesh.material.has_holes and mesh.is_solid]
+        return {mesh: np.array(numbers[mesh]) for mesh in solids}
+
+    @cached_property
     def main_bounds(self) -> np.ndarray:
         """(2, 3) float64: `bounds`, unless a few vertices lie far outside of all the others: then those of the others.
 

@@ -5,6 +5,8 @@
 
 const bool one_sided;   // some mesh of the scene is single_sided
 const bool cut_outs;    // some mesh of the scene has holes, or is blended
+const bool textured;    // some mesh of the scene has a texture
+const bool vertex_colored;  // some mesh of the scene has colours of its vertices
 
 uniform sampler2D base_texture;
 uniform vec4 base_color;
@@ -16,7 +18,10 @@ uniform bool has_shares;
 
 // Linear colour and alpha at `uv`, for a vertex colour.
 vec4 baseColor(vec2 uv, vec4 vertexColor) {
-    return base_color * vertexColor * texture(base_texture, uv);
+    vec4 color = base_color;
+    if (vertex_colored) color *= vertexColor;
+    if (textured) color *= texture(base_texture, uv);
+    return color;
 }
 
 // A threshold in [0, 1) for a pixel: among its neighbours, all values are as frequent. Interleaved gradient noise, Jimenez

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import small_scenes
 
 from aolab.errors import Notice, SceneError
 from aolab.scene.mesh import Material, Mesh, Texture
@@ -182,3 +183,45 @@ def test_a_texture_without_uv_is_left_out_with_a_notice():
         mesh = Mesh(np.eye(3), [[0, 1, 2]], material=Material((0.2, 0.4, 0.6), texture))
     assert mesh.material.texture is None
     assert mesh.material.base_color == (0.2, 0.4, 0.6)
+
+
+BOX = small_scenes.box((0, 0, 0), (1, 1, 1))
+
+
+def _joined(*meshes: Mesh) -> Mesh:
+    """One mesh of the triangles of several."""
+    starts = np.cumsum([0, *(len(mesh.vertices) for mesh in meshes)])
+    faces = [mesh.faces.astype(int) + start for mesh, start in zip(meshes, starts[:-1], strict=True)]
+    return Mesh(np.concatenate([mesh.vertices for mesh in meshes]), np.concatenate(faces))
+
+
+def _flipped(mesh: Mesh) -> Mesh:
+    return Mesh(mesh.vertices, mesh.faces[:, ::-1])
+
+
+APART = small_scenes.box((3, 0, 0), (4, 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("mesh", "solid"),
+    [
+        (BOX, True),
+        (small_scenes.sphere(1.0, (9, 9, 9), subdivisions=1), True),
+        (_joined(BOX, APART), True),
+        (_flipped(BOX), False),
+        (_joined(BOX, _flipped(small_scenes.box((3, 0, 0), (3.5, 0.5, 0.5)))), False),  # the smaller part inside out
+        (Mesh(BOX.vertices, BOX.faces[1:]), False),
+        (
+            Mesh(BOX.vertices, np.concatenate([BOX.faces[:1, ::-1], BOX.faces[1:]])),
+            False,
+        ),  # closed, one triangle turned
+        (Mesh(SQUARE, TWO), False),
+    ],
+)
+def test_a_solid_is_closed_and_has_its_fronts_outside(mesh, solid):
+    assert mesh.is_solid is solid
+
+
+def test_a_turned_triangle_leaves_a_mesh_closed():
+    assert Mesh(BOX.vertices, np.concatenate([BOX.faces[:1, ::-1], BOX.faces[1:]])).is_closed
+    assert not Mesh(BOX.vertices, BOX.faces[1:]).is_closed
