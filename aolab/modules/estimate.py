@@ -13,7 +13,8 @@ class Estimate:
 
     The outputs are averaged over the sample sets, filtered, and brought to full size. `once` are passes before the
     others, at full size, that no sample set changes: voxels, or a light's G-buffer. `filter` replaces the module's own
-    choice, and `scale` the module's scale.
+    choice, and `scale` the module's scale. Of several outputs whose passes state their `background`, `decides` names an
+    output that has its background's value only where all of them have theirs.
     """
 
     passes: Sequence[Pass]
@@ -21,3 +22,4 @@ class Estimate:
     once: Sequence[Pass] = ()
     filter: Filter | None = None
     scale: float | None = None
+    decides: str = ""

@@ -111,14 +111,15 @@ class S3HO(Marched):
         if self.indirect:
             constants = {"patches": self.senders == "patches", "fading": self.strength > 0}
             # no light is known yet: a sender is given by its albedo, as hidden ones are from the beginning
-            passes.append(Pass("s3ho senders", "s3ho.senders.frag", SENDERS, constants, {"sender": "albedo"}))
+            nothing, albedo = dict.fromkeys(SENDERS, 0.0), {"sender": "albedo"}
+            passes.append(Pass("s3ho senders", "s3ho.senders.frag", SENDERS, constants, albedo, background=nothing))
             outputs |= SENDERS
-        return Estimate(passes, outputs)
+        # a blocked direction has a part in the first coefficient, and only such directions have senders
+        return Estimate(passes, outputs, decides="occlusion0" if self.estimator == "blocked" else "")
 
     def passes(self) -> list[Pass]:
         constants = {"fading": self.strength > 0, "plain": self.estimator == "plain"}
-        # no `background`: with four targets, the depth test costs more than it saves (docs/performance.md)
-        return [Pass("s3ho", self.shader, OCCLUSION, constants)]
+        return [Pass("s3ho", self.shader, OCCLUSION, constants, background=self._background(S3HO, 0.0))]
 
     def sends(self) -> bool:
         return self.indirect

@@ -31,9 +31,9 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
         raw = _accumulated(state, what, given, formats)
     # a filter compares distances to the tangent plane, which no map bends
     small, large = (facing(state.small, "geometric"), state.small_view), (facing(state.large, "geometric"), frame.view)
-    where = state.small_where
-    background = {name: value for step in what.passes for name, value in step.background.items()} if where else {}
-    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large, where, background)
+    background = {name: value for step in what.passes for name, value in step.background.items()}
+    decides = what.decides or (next(iter(what.outputs)) if len(what.outputs) == 1 else "")
+    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large, background, decides)
     return {**{f"{name}_raw": texture for name, texture in raw.items()}, **result}
 
 

@@ -4,7 +4,6 @@ A pass treats up to four buffers alike, and reads the geometry once for all of t
 """
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from types import MappingProxyType
 
 import moderngl
@@ -13,9 +12,11 @@ from ..gl import context
 from ..gl.bindings import Bindings
 from ..gl.texture import FORMATS
 from ..modules.filters import Filter
-from ..modules.filters.base import MOST_SOURCES, over_sources
+from ..modules.filters.base import MOST_SOURCES, over_sources, titled
+from ..modules.passes import Pass
 from ..scene.view import View, ray_scale_offset
-from .pass_runner import Buffers, PassRunner, Where
+from .pass_runner import Buffers, PassRunner
+from .tiles import PIXELS, Tiles, grid
 
 Formats = Mapping[str, str]
 
@@ -27,26 +28,48 @@ def apply(
     formats: Formats,
     small: tuple[Buffers, View],
     large: tuple[Buffers, View],
-    where: Where | None = None,
     background: Mapping[str, float] = MappingProxyType({}),
+    decides: str = "",
 ) -> Buffers:
     """Each buffer of the estimate, filtered and at full size; `small` and `large` are surfaces with their view.
 
-    `where` are the pixels with surfaces; `background` has the values of buffers of the estimate elsewhere.
+    On a software renderer, buffers with values in `background` are filtered where the buffer `decides` has another
+    value within the filter's reach. Elsewhere they all have these values, so that their means are known.
     """
     result: Buffers = {}
     upsampled = small[1].size != large[1].size
+    tiles = None
+    if decides in background and runner.timer.software and not (upsampled and filter.at_full_size):
+        tiles = _differing(runner, filter, decides, estimate, formats, background[decides])
     for names in _groups(estimate):
         some, textures = {name: formats[name] for name in names}, {name: estimate[name] for name in names}
+        there = tiles if background.keys() >= some.keys() else None
         if filter.at_full_size:
             if upsampled:
                 textures = _upsample(runner, filter, textures, some, small, large)
-            result |= _passes(runner, filter, textures, some, large)
+            result |= _passes(runner, filter, textures, some, large, there)
         else:
-            there = where if background.keys() >= some.keys() else None
-            textures = _passes(runner, filter, textures, some, small, there, background)
+            textures = _passes(runner, filter, textures, some, small, there)
             result |= _upsample(runner, filter, textures, some, small, large) if upsampled else textures
+    if tiles:
+        runner.give_back({"tiles": tiles.texture})
     return result
+
+
+def _differing(
+    runner: PassRunner, filter: Filter, decides: str, estimate: Buffers, formats: Formats, value: float
+) -> Tiles | None:
+    """The tiles with a value other than `value` in the buffer `decides`, within the filter's reach; None without it."""
+    reach = filter.reach()
+    if reach is None:
+        return None
+    texture = estimate[decides]
+    name = titled("filter", next(names for names in _groups(estimate) if decides in names))  # its time is the filter's
+    constants = {"tile_pixels": PIXELS, "reach": reach, "single": FORMATS[formats[decides]][0] == 1}
+    step = Pass(name, "pipeline/tiles.frag", {"tiles": "R8"}, constants)
+    texel_size = 1 / texture.width, 1 / texture.height
+    given = Bindings("the buffer", {"source": texture}, {"value": value, "source_texel_size": texel_size})
+    return Tiles(runner.run(step, [given], grid(texture.size))["tiles"])
 
 
 def _passes(
@@ -55,15 +78,13 @@ def _passes(
     textures: Buffers,
     formats: Formats,
     surfaces: tuple[Buffers, View],
-    where: Where | None = None,
-    background: Mapping[str, float] = MappingProxyType({}),
+    tiles: Tiles | None = None,
 ) -> Buffers:
-    """The filter's passes, each over the result of the one before it; `where`, if the filter keeps the background."""
-    where = where if filter.keeps_background else None
+    """The filter's passes, each over the result of the one before it, over `tiles`; elsewhere all values are equal."""
     given = textures
     for step in filter.passes(formats):
-        step = replace(step, background={name: background[name] for name in formats}) if where else step
-        made = runner.run(step, [*_common(filter, *surfaces), _sources(textures)], surfaces[1].size, where=where)
+        bindings = [*_common(filter, *surfaces), _sources(textures)]
+        made = runner.run(step, bindings, surfaces[1].size, where=tiles, elsewhere=textures)
         if textures is not given:
             runner.give_back(textures)
         textures = made

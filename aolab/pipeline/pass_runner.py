@@ -20,6 +20,7 @@ from ..gl.words import declaration
 from ..modules.buffers import ON_DEMAND
 from ..modules.passes import Pass
 from ..scene.view import Region
+from .tiles import Tiles
 
 Buffers = dict[str, moderngl.Texture]
 
@@ -36,6 +37,8 @@ class Where:
 
     depth: Depth
     surfaces: bool = True
+    vertex = FULLSCREEN
+    bindings = ()
 
     @property
     def background(self) -> "Where":
@@ -114,31 +117,37 @@ class PassRunner:
         *,
         targets: Buffers | None = None,
         region: Region | None = None,
-        where: Where | None = None,
+        where: Where | Tiles | None = None,
+        elsewhere: Buffers | None = None,
     ) -> Buffers:
         """Draw one pass over the whole of `size`, or over a `region` of it; returns its outputs.
 
-        With `where`, the pass is drawn there. Elsewhere, its outputs have the values of its `background`; those that it
-        does not name, and `targets`, stay as they are.
+        With `where`, the pass is drawn there. Elsewhere, its outputs are those of `elsewhere`, where given, or have the
+        values of its `background`; those that it does not name, and `targets`, stay as they are.
 
         `targets`, where given, are drawn into in place of new textures. Raises `ParameterError` for a name that two of
         the bindings give, and `ShaderError`.
         """
-        given = joined((*bindings, *_own(step)), f"pass '{step.name}'")
-        program = self.program(step, given)
+        given = joined((*bindings, *_own(step), *(where.bindings if where else ())), f"pass '{step.name}'")
+        program = self.program(step, given, where.vertex if where else FULLSCREEN)
         outputs = targets or self.targets(step, size)
         program.set(given.uniforms, given.words)
         self.bind(program, given.textures, step.reads)
         framebuffer = self.framebuffer(program, step, outputs, where.depth if where else None)
         whole = region or (0, 0, *size)
         with self.timer.measure(step.name), where.test(framebuffer) if where else nullcontext():
-            if where and not targets:
+            if where and elsewhere:
+                context.get().copy_framebuffer(framebuffer, self.framebuffer(program, step, elsewhere))
+            elif where and not targets:
                 for name, value in step.background.items():
-                    self.pool.framebuffer([outputs[name]]).clear(value, value, value, value)
+                    self.pool.fill(outputs[name], step.outputs[name], value)
             framebuffer.use()
             for band in bands(program, whole) if self.timer.software else (whole,):
-                framebuffer.viewport = band
-                self._fullscreen(program).render(moderngl.TRIANGLES, 3)
+                if isinstance(where, Tiles):
+                    where.draw(framebuffer, self._vertices(program), band)
+                else:
+                    framebuffer.viewport = band
+                    self._vertices(program).render(moderngl.TRIANGLES, 3)
         return outputs
 
     def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:
@@ -201,7 +210,8 @@ class PassRunner:
             self._borders[value] = sampler
         return self._borders[value]
 
-    def _fullscreen(self, program: Program) -> moderngl.VertexArray:
+    def _vertices(self, program: Program) -> moderngl.VertexArray:
+        """Vertices without input, numbered."""
         if program.fullscreen is None:
             program.fullscreen = context.get().vertex_array(program.gl, [])
         return program.fullscreen

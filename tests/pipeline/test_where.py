@@ -1,4 +1,4 @@
-"""Passes that are drawn over surfaces alone give the values of the passes over all pixels."""
+"""Passes that are drawn over surfaces, or over tiles of the picture, give the values of the passes over all pixels."""
 
 from dataclasses import replace
 
@@ -9,8 +9,9 @@ import small_scenes
 import aolab
 from aolab import Camera, Environment
 from aolab.modules import MODULES
+from aolab.modules.estimate import Estimate
 
-SIZE = (48, 32)
+SIZE = (99, 69)  # the last tiles of a row have 3 pixels, those of a column 5
 DRAWN_THERE = [
     name for name, module in MODULES.items() if module.shader and any(p.background for p in module().passes())
 ]
@@ -26,25 +27,30 @@ def scene() -> aolab.Scene:
 
 def over_all(lab: aolab.Lab, monkeypatch, module: aolab.Module, **options) -> aolab.Frame:
     """The frame of passes that know no background."""
-    passes = type(module).passes
+    whole = type(module).estimate
+
+    def estimate(self: aolab.Module) -> Estimate:
+        made = whole(self)
+        return replace(made, passes=[replace(one, background={}) for one in made.passes])
+
     with monkeypatch.context() as patch:
-        patch.setattr(type(module), "passes", lambda self: [replace(one, background={}) for one in passes(self)])
+        patch.setattr(type(module), "estimate", estimate)
         return lab.render(scene(), module, size=SIZE, **options).complete()
 
 
 def test_these_methods_are_drawn_there():
-    assert set(DRAWN_THERE) == {"ssao", "ssbn", "instant_radiosity"}
+    assert set(DRAWN_THERE) == {"ssao", "ssbn", "s3ho", "instant_radiosity"}
 
 
 @pytest.mark.parametrize("filter", FILTERS)
 @pytest.mark.parametrize("name", DRAWN_THERE)
 def test_buffers_are_those_of_passes_over_all_pixels(lab, monkeypatch, name, filter):
-    module = MODULES[name](radius=1.0, filter=filter)
+    module = MODULES[name](radius=1.0, filter=filter, **({"indirect": True} if name == "s3ho" else {}))
     plain = over_all(lab, monkeypatch, module)
     lab.render(scene(), "none", size=SIZE).complete()  # other values in the textures that the pool lends
     fast = lab.render(scene(), module, size=SIZE).complete()
     assert 0.1 < fast.mask.mean() < 0.9
-    for buffer in module.outputs:
+    for buffer in module.estimate().outputs:
         for one in (buffer, f"{buffer}_raw"):
             np.testing.assert_array_equal(fast.channels(one), plain.channels(one), err_msg=one)
 

@@ -1,6 +1,6 @@
 """The interface of a filter: the passes that remove an estimate's noise, and the shader that brings it to full size."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import ClassVar
 
 from ..parameters import Choice
@@ -13,17 +13,22 @@ class Filter(Choice):
     """A way to remove noise. A subclass states its parameters, and these facts:
 
     `name` (lower case); `passes`; `upsampling`, the shader that brings an estimate of a lower `scale` to full size;
-    `at_full_size`, whether the passes run after the upsampling in place of before it; and `keeps_background`, whether
-    the passes leave values as they are where no surface is, so that they may be drawn over surfaces alone. Each pass
-    reads up to four buffers as `source0` to `source3` and writes `results` (lib/sources.glsl), and may read viewZ,
-    viewNormal and albedo at its size. The upsampling shader reads besides smallViewZ and smallNormal. The filter's
-    numbers are uniforms and constants of all of these shaders by themselves.
+    `at_full_size`, whether the passes run after the upsampling in place of before it; and `reach`. Each pass reads up
+    to four buffers as `source0` to `source3` and writes `results` (lib/sources.glsl), and may read viewZ, viewNormal
+    and albedo at its size. The upsampling shader reads besides smallViewZ and smallNormal. The filter's numbers are
+    uniforms and constants of all of these shaders by themselves.
     """
 
     axis: ClassVar[str] = "filter"
     upsampling: ClassVar[str] = "pipeline/upsample.frag"
     at_full_size: ClassVar[bool] = False
-    keeps_background: ClassVar[bool] = False
+
+    def reach(self) -> int | None:
+        """How far the passes read, in pixels in x and in y, if each result is a mean of the values in that window.
+
+        The mean of equal values is known, so that a software renderer may skip it. None: the results are no such means.
+        """
+        return None
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         """The passes over up to four buffers, `formats` (name: format); each reads the results of the one before it."""
@@ -37,7 +42,7 @@ def over_sources(name: str, shader: str, formats: Mapping[str, str], **constants
     return Pass(titled(name, formats), shader, formats, {**counts, **constants}, writes=writes)
 
 
-def titled(what: str, names: Mapping[str, str]) -> str:
+def titled(what: str, names: Iterable[str]) -> str:
     """The name in timings: 'filter visibility', 'filter occlusion0 to occlusion3'."""
     first, *others = names
     return f"{what} {first}" + (f" to {others[-1]}" if others else "")

@@ -10,7 +10,9 @@ class Bilateral(Filter):
     """Weights over 8 pixels of a row, then of a column, by geometry (Herholz et al. 2012)."""
 
     name = "bilateral"
-    keeps_background = True
+
+    def reach(self) -> int:
+        return 4
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         shader = "pipeline/bilateral.frag"

@@ -10,7 +10,9 @@ class Box4(Filter):
     """The mean over 4 pixels of a row, then of a column, that lie on the same surface (Umenhoffer et al. 2009)."""
 
     name = "box4"
-    keeps_background = True
+
+    def reach(self) -> int:
+        return 2
 
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         shader = "pipeline/box4.frag"

@@ -22,6 +22,9 @@ class Wendland(Filter):
         le=1,
     )
 
+    def reach(self) -> int:
+        return self.filter_size // 2
+
     def passes(self, formats: Mapping[str, str]) -> list[Pass]:
         shader = "pipeline/wendland.frag"
         return [over_sources("filter", shader, formats, vertical=vertical) for vertical in (False, True)]
