@@ -2,18 +2,38 @@
 
 import os
 import sys
-from typing import Any
+from typing import Any, ClassVar, TextIO
+from weakref import WeakSet
 
 from tqdm import tqdm
 
 PATIENCE = 0.5  # seconds: shorter work shows no bar
+SMOOTHING = 0.1  # weight of the last step in the rate: threads end their steps in pairs, and then wait
 LOG_EVERY = 30.0  # seconds between two lines where standard error is no terminal; shorter work writes none
+
+
+class _Bar(tqdm):
+    """A bar that leaves room for the `^C` that a terminal shows behind it: a longer line would break there."""
+
+    @property
+    def format_dict(self) -> Any:
+        self.ncols = _columns(self.fp) - 3
+        return super().format_dict
+
+
+def _columns(stream: Any) -> int:
+    """The width of a terminal; 80 where it reports none, as in some containers."""
+    try:
+        return os.get_terminal_size(stream.fileno()).columns or 80
+    except (OSError, ValueError):
+        return 80
 
 
 class _Lines(tqdm):
     """A line of its own for each report, for files that are read later."""
 
     monitor_interval = 0  # a line is written when work has been done, not by a thread in between
+    _instances: ClassVar[WeakSet] = WeakSet()  # apart from the bars, which `write_line` draws again below the line
 
     def display(self, msg: str | None = None, pos: int | None = None) -> None:
         self.fp.write(f"{msg or self}\n")
@@ -26,7 +46,8 @@ def progress_bar(what: str, total: int, unit: str = "", *, shown: bool | None = 
     `shown`: None shows a bar in a terminal or a notebook, and in a log a line every 30 seconds; True and False force
     or forbid it, as does the environment variable TQDM_DISABLE=1. `unit` stands behind the count. `options` are tqdm's.
     """
-    usual = {"desc": what, "total": total, "unit": unit or "it", "leave": False, **options}
+    usual = {"desc": what, "total": total, "unit": unit or "it", "leave": False, "smoothing": SMOOTHING, "miniters": 0}
+    usual |= options
     # a program without a console has no standard error on Windows; tqdm's notebook ignores the variable
     if shown is False or sys.stderr is None or os.environ.get("TQDM_DISABLE"):
         usual["disable"] = True
@@ -35,15 +56,11 @@ def progress_bar(what: str, total: int, unit: str = "", *, shown: bool | None = 
 
         return in_notebook(**usual, delay=PATIENCE)
     if shown or (sys.stderr is not None and sys.stderr.isatty()):
-        return tqdm(**usual, delay=0 if shown else PATIENCE, **_width())
+        return _Bar(**usual, delay=0 if shown else PATIENCE, ncols=80, nrows=24)
     layout = "{desc}: {percentage:.0f} %, {elapsed} elapsed, {remaining} left"
-    return _Lines(**usual, bar_format=layout, delay=LOG_EVERY, mininterval=LOG_EVERY, miniters=1)
+    return _Lines(**usual, bar_format=layout, delay=LOG_EVERY, mininterval=LOG_EVERY)
 
 
-def _width() -> dict[str, Any]:
-    """tqdm's options for the width: of the terminal, or 80 columns where it reports none, as in some containers."""
-    try:
-        known = os.get_terminal_size(sys.stderr.fileno()).columns > 0
-    except (OSError, ValueError):
-        known = False
-    return {"dynamic_ncols": True} if known else {"ncols": 80, "nrows": 24}
+def write_line(text: str, file: TextIO | None = None) -> None:
+    """Write a line to standard output, or to `file`, above the bars that are shown."""
+    tqdm.write(text, file=file)

@@ -45,6 +45,44 @@ def test_a_terminal_gets_a_bar_with_the_time_left(written):
     assert text.rsplit("\r", 2)[1].strip() == ""  # in the end it is removed
 
 
+def test_a_line_stands_above_the_bar(monkeypatch):
+    """The bar is removed, the line is written, and the bar is drawn below it."""
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    monkeypatch.setattr("sys.stderr", stream := Stream(terminal=True))
+    with progress.progress_bar("reference", 4) as bar:
+        bar.update()
+        progress.write_line("a note", stream)
+    assert re.search(r"\r +\ra note\n\rreference: +25%", stream.getvalue())
+
+
+def test_a_log_gets_the_line_alone(monkeypatch):
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    monkeypatch.setattr("sys.stderr", stream := Stream(terminal=False))
+    with progress.progress_bar("reference", 4) as bar:
+        bar.update()
+        progress.write_line("a note", stream)
+    assert stream.getvalue() == "a note\n"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pseudoterminals")
+def test_a_bar_leaves_room_for_the_mark_of_an_interrupt(monkeypatch):
+    """A terminal shows ^C behind the bar; on a full line it would go to the next one, and the bar would stay."""
+    import fcntl
+    import pty
+    import struct
+    import termios
+
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    ours, theirs = pty.openpty()
+    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 50, 0, 0))
+    with open(theirs, "w") as stream:
+        monkeypatch.setattr("sys.stderr", stream)
+        with progress.progress_bar("reference", 4, shown=True) as bar:
+            assert len(str(bar)) <= 50 - len("^C")
+    os.close(ours)
+
+
 def test_a_log_gets_no_line_for_short_work(written):
     assert written(terminal=False) == ""
 

@@ -8,10 +8,11 @@ import signal
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 
@@ -46,19 +47,38 @@ class Graded:
         return {"folder": str(self.folder), "exercise": result.exercise, **totals, **texts, **checks}
 
 
+@dataclass
+class Processes:
+    """The processes of checks that run beside each other; `end` ends them all, and each one that starts later."""
+
+    running: set[subprocess.Popen[str]] = field(default_factory=set)
+    ended: threading.Event = field(default_factory=threading.Event)
+
+    def end(self) -> None:
+        self.ended.set()
+        for process in list(self.running):
+            _kill(process)
+
+
 def checked_apart(
-    folder: str | Path, *, only: str | None = None, seed: int = 0, name: str | Path | None = None, limit: float = LIMIT
+    folder: str | Path,
+    *,
+    only: str | None = None,
+    seed: int = 0,
+    name: str | Path | None = None,
+    limit: float = LIMIT,
+    processes: Processes | None = None,
 ) -> Result:
     """As `check`, in a process of its own that is ended after `limit` seconds, as by an endless loop in a shader.
 
-    Raises `ParameterError` and `FileError` for a folder without an exercise.
+    The process is one of `processes`. Raises `ParameterError` and `FileError` for a folder without an exercise.
     """
     one = exercise_of(Path(folder), name)
     with tempfile.TemporaryDirectory() as place:
         out = Path(place) / "result.json"
         order = {"folder": str(folder), "only": only, "seed": seed, "name": None if name is None else str(name)}
         command = [sys.executable, "-m", "aolab.course.worker", json.dumps(order), str(out)]
-        ended, reason = _run(command, limit)
+        ended, reason = _run(command, limit, processes or Processes())
         if out.is_file():
             return Result.from_dict(json.loads(out.read_text(encoding="utf-8")))
     if ended is None:
@@ -66,7 +86,7 @@ def checked_apart(
     return _failed(one, reason or f"the check ended with code {ended}")
 
 
-def _run(command: Sequence[str], limit: float) -> tuple[int | None, str]:
+def _run(command: Sequence[str], limit: float, processes: Processes) -> tuple[int | None, str]:
     """The exit code, None after the time limit, and the last line of the error output."""
     process = subprocess.Popen(
         command,
@@ -77,16 +97,25 @@ def _run(command: Sequence[str], limit: float) -> tuple[int | None, str]:
         start_new_session=os.name == "posix",
     )
     try:
+        processes.running.add(process)
+        if processes.ended.is_set():
+            _kill(process)
         _, errors = process.communicate(timeout=limit)
     except BaseException as error:
-        with suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL) if os.name == "posix" else process.kill()
+        _kill(process)
         process.communicate()
         if isinstance(error, subprocess.TimeoutExpired):
             return None, ""
         raise
+    finally:
+        processes.running.discard(process)
     lines = [line for line in errors.splitlines() if line.strip()]
     return process.returncode, lines[-1] if lines else ""
+
+
+def _kill(process: subprocess.Popen[str]) -> None:
+    with suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL) if os.name == "posix" else process.kill()
 
 
 def _failed(one: Exercise, error: str) -> Result:
@@ -106,7 +135,8 @@ def grade(
 ) -> list[Graded]:
     """Check many folders in `workers` processes at a time (by default one for each core), in the order of `folders`.
 
-    `done` is called with each result when it is there. A folder whose exercise is unknown has 0 points and an error.
+    `done` is called with each result when it is there. An error or an interrupt ends the processes. A folder whose
+    exercise is unknown has 0 points and an error.
     """
     wanted = [Path(folder) for folder in folders]
     if not wanted:
@@ -117,16 +147,23 @@ def grade(
     def one(folder: Path) -> Graded:
         start = perf_counter()
         try:
-            result = checked_apart(located(folder), seed=seed, name=name, limit=limit)
+            result = checked_apart(located(folder), seed=seed, name=name, limit=limit, processes=processes)
         except Error as error:
             result = Result("", "", error=str(error))
         graded = Graded(folder, result, perf_counter() - start)
-        done(graded)
+        if not processes.ended.is_set():
+            done(graded)
         return graded
 
     count = workers or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    processes = Processes()
     with ThreadPoolExecutor(max(1, count)) as pool:
-        return list(pool.map(one, wanted))
+        try:
+            return list(pool.map(one, wanted))
+        except BaseException:  # an interrupt
+            pool.shutdown(wait=False, cancel_futures=True)
+            processes.end()
+            raise
 
 
 def located(folder: Path) -> Path:

@@ -5,7 +5,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
-import trimesh
 
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
@@ -63,7 +62,9 @@ def wall() -> Scene:
 
 def ball() -> Scene:
     """A sphere of radius 1, whose centre is 1.5 above a floor."""
-    shape = trimesh.creation.icosphere(4, 1.0)
+    from trimesh.creation import icosphere  # trimesh takes 0.5 s to import
+
+    shape = icosphere(4, 1.0)
     sphere = Mesh(shape.vertices + np.array((0, 1.5, 0)), shape.faces, normals=shape.vertices, material=WHITE)
     return _of(_floor(), sphere, camera=Camera((0, 1.0, 4.2), (0, 0.8, 0), fov=75))
 

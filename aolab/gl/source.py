@@ -107,7 +107,7 @@ def located(name: str | Path, including: Path | None) -> Path | None:
 
     A shader by itself (`including` is None) may also be in the working directory; a `Path` is looked up only there.
     """
-    root = paths.glsl().resolve()
+    root = paths.glsl()
     built_in = (root / name).resolve()
     places = [built_in] if built_in.is_relative_to(root) and not isinstance(name, Path) else []
     if including is None:
@@ -135,7 +135,7 @@ def _is_file(path: Path) -> bool:
 
 def _shown(path: Path) -> str:
     """The name of a shader's file in messages: `glsl/FILE`, or its path, short if it is in the working directory."""
-    for folder, prefix in ((paths.glsl().resolve(), "glsl/"), (Path.cwd(), "")):
+    for folder, prefix in ((paths.glsl(), "glsl/"), (Path.cwd(), "")):
         if path.is_relative_to(folder):
             return prefix + path.relative_to(folder).as_posix()
     return str(path)
@@ -170,16 +170,17 @@ class _Builder:
         if path in chain:
             cycle = [*chain[chain.index(path) :], path]
             raise ShaderError(f"{where}: include cycle: {' -> '.join(one.name for one in cycle)}")
+        shown = _shown(path)
         if path not in self.files:  # once only
             self.files.add(path)
-            self.add(_shown(path), read_text(path, _shown(path)), [*chain, path])
-        return _shown(path)
+            self.add(shown, read_text(path, shown), [*chain, path])
+        return shown
 
     def missing(self, name: str | Path, including: Path | None) -> str:
         """The message about a file that is not there."""
         if isinstance(name, Path):
             return f"no file {name}"
-        root = paths.glsl().resolve()
+        root = paths.glsl()
         known = [str(path.relative_to(root)) for path in root.rglob("*") if path.suffix in SUFFIXES]
         if including is None or including.is_relative_to(root):
             return f"no file 'glsl/{name}'{suggestion(name, [*known, *self.aliases])}"

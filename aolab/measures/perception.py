@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
 
 from ..extras import need
 
@@ -22,6 +21,7 @@ def ssim_map(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
     Wang et al. 2004, eq. 13, in a Gaussian window; at the image's edge the picture is mirrored.
     """
+    from scipy.ndimage import gaussian_filter  # its import takes 0.3 s
 
     def mean(picture: np.ndarray) -> np.ndarray:
         return gaussian_filter(picture, (_SIGMA, _SIGMA, 0), truncate=_TRUNCATE)

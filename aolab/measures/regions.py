@@ -1,10 +1,10 @@
 """Regions of the image where screen-space methods lack knowledge: the border, silhouettes, thin occluders.
 
-All depth tests use nearness, 1 / distance: it is linear over the image of a plane, and 0 in the background.
+All depth tests use nearness, 1 / distance: it is linear over the image of a plane, and 0 in the background. The
+functions import scipy.ndimage, since that takes 0.3 s.
 """
 
 import numpy as np
-from scipy.ndimage import binary_dilation, find_objects, grey_opening, label
 
 # The share of the distance by which depth jumps at a gap. Twice as much finds 4 to 33 % fewer silhouettes on the six
 # scenes at 320×180; with 0.02, `thin` holds 8 % of `colonnade`, mostly the relief of its columns, instead of 0.4 %.
@@ -37,6 +37,8 @@ def silhouettes(view_z: np.ndarray, width: int = SILHOUETTE_PX) -> np.ndarray:
     Two neighbours have a gap between them if each misses the plane that continues the other's side, by more than `GAP`
     of the distance. So a floor at a grazing angle has no gaps, and a crease has none.
     """
+    from scipy.ndimage import binary_dilation
+
     near = nearness(view_z)
     beside = _beside_gap(near) | _beside_gap(near.T).T
     return binary_dilation(beside, np.ones((3, 3)), iterations=width - 1) if width > 1 else beside
@@ -61,6 +63,8 @@ def thin_occluders(view_z: np.ndarray, width: int = THIN_PX) -> np.ndarray:
     than `width` are corners of wider things, and do not count. All pixels within `width` of a thin surface belong to
     the region, since a wrong guess at its thickness shows there.
     """
+    from scipy.ndimage import binary_dilation, find_objects, grey_opening, label
+
     near = nearness(view_z)
     steps = np.arange(width) - (width - 1) / 2
     disc = steps**2 + steps[:, None] ** 2 <= (width / 2) ** 2

@@ -91,7 +91,7 @@ def relight(
         )
     degrees = [360 * i / k for i in range(k)]
     measures, relative = [], []
-    with progress_bar("rotations", k) as bar:
+    with progress_bar("rotations", k, "rotation") as bar:
         for angle in degrees:
             turned = environment.rotated(angle)
             one = measured(result(turned), truth(turned), buffer, flip=False)[buffer]

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
 from ..errors import ParameterError
 from ..extras import missing
@@ -135,6 +135,8 @@ def buffer_picture(name: str, values: np.ndarray, title: str = "") -> Image.Imag
 
 def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
     """`pixels` (H, W, 3) under a title, with the bar of `scale` on the right."""
+    from PIL import ImageDraw, ImageFont
+
     height, width = pixels.shape[:2]
     sheet = Image.new("RGB", (width + (BAR + TICK if scale else 0), height + LINE), PAPER)
     ImageDraw.Draw(sheet).text((2, 1), title, INK, font=ImageFont.load_default(size=13))
@@ -146,6 +148,8 @@ def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
 
 def bar_picture(scale: Scale, height: int) -> Image.Image:
     """The colour bar of a scale, with numbers beside it."""
+    from PIL import ImageDraw, ImageFont
+
     bar = Image.new("RGB", (BAR + TICK, height), PAPER)
     draw, font = ImageDraw.Draw(bar), ImageFont.load_default(size=13)
     ramp = np.linspace(scale.high, scale.low, height)[:, None].repeat(BAR, axis=1)

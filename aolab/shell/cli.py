@@ -37,7 +37,7 @@ def main(imported: Callable[[], object] = lambda: None) -> None:
             print("aolab:", message, file=sys.stderr)
         code = INTERRUPTED if interrupted else REFUSED
     if code == INTERRUPTED:
-        print("aolab: interrupted", file=sys.stderr)
+        print(f"{_clean_line()}aolab: interrupted", file=sys.stderr)
     sys.exit(code)
 
 
@@ -46,12 +46,14 @@ def _run(arguments: list[str], imported: Callable[[], object]) -> int:
 
     from ..errors import Notice
     from .app import app
+    from .interrupts import after_imports
 
     imported()
     warnings.simplefilter("always", Notice)
     warnings.showwarning = _show_notice
-    # typer returns the code of `typer.Exit`, and of an interrupt
-    return app(arguments, prog_name="aolab", standalone_mode=False) or DONE
+    with after_imports():
+        # typer returns the code of `typer.Exit`, and of an interrupt
+        return app(arguments, prog_name="aolab", standalone_mode=False) or DONE
 
 
 def _message(error: Exception, arguments: list[str]) -> str | None:
@@ -77,7 +79,19 @@ def _show_notice(message: Any, category: type[Warning], filename: str, lineno: i
     from ..errors import Notice
 
     kind = "note" if issubclass(category, Notice) else f"{filename}:{lineno}: {category.__name__}"
-    print(f"aolab: {kind}: {message}", file=sys.stderr)
+    line = f"aolab: {kind}: {message}"
+    if "aolab.progress" in sys.modules:  # a bar may be shown
+        from ..progress import write_line
+
+        write_line(line, sys.stderr)
+    else:
+        print(line, file=sys.stderr)
+
+
+def _clean_line() -> str:
+    """The characters that remove `^C` from a terminal."""
+    is_terminal = os.name == "posix" and sys.stderr is not None and sys.stderr.isatty()
+    return "\r\x1b[K" if is_terminal else ""
 
 
 def _write_any_character() -> None:

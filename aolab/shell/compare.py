@@ -94,7 +94,7 @@ def _relit(
     loaded = load(scene)
     pairs = with_their_truth(loaded, modules, radius)
     found = {}
-    with progress_bar("modules", len(pairs)) as bar:
+    with progress_bar("modules", len(pairs), "module") as bar:
         for module, like in pairs:
             found[label(module, loaded)] = relighting_error(loaded, module, turns, size=size, rays=rays, like=like)
             bar.update()

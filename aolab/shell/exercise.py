@@ -148,14 +148,14 @@ def grade(
     from ..course import grade as run
     from ..course.grade import Graded, table
     from ..output import check_writable, replacing
-    from ..progress import progress_bar
+    from ..progress import progress_bar, write_line
 
     check_writable(output)
-    with progress_bar("folders", len(folders)) as bar:
+    with progress_bar("folders", len(folders), "folder") as bar:
 
         def done(one: Graded) -> None:
             bar.update()
-            bar.write(f"{one.folder}: {one.result.score:g} of {one.result.points:g}  {one.result.error}".rstrip())
+            write_line(f"{one.folder}: {one.result.score:g} of {one.result.points:g}  {one.result.error}".rstrip())
 
         found = run(folders, seed=seed, name=which, limit=limit, workers=workers, done=done)
     with replacing(output) as file:

@@ -36,7 +36,7 @@ def reproduce(
     """
     from ..papers.reproduce import figures
     from ..papers.reproduce import reproduce as draw
-    from ..progress import progress_bar
+    from ..progress import progress_bar, write_line
     from . import text
 
     found = []
@@ -45,6 +45,6 @@ def reproduce(
             found.append(content)
             bar.update()
             if not as_json:
-                bar.write(f"{folder / name}.png: {content['claim']}. {content['verdict']}")
+                write_line(f"{folder / name}.png: {content['claim']}. {content['verdict']}")
     if as_json:
         print(json.dumps(found, indent=2))

@@ -37,7 +37,7 @@ def frames(scene_name: str, size: Size, repeats: int) -> Result:
     """
     scene, lab = load(scene_name), Lab(size)
     modules = {}
-    with progress_bar("modules", len(MODULES) + 2) as bar:
+    with progress_bar("modules", len(MODULES) + 2, "module") as bar:
         for name, module in MODULES.items():
             modules[name] = _module(lab, scene, module(), size, repeats)
             bar.update()

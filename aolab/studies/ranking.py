@@ -131,7 +131,7 @@ def compare_modules(
         if buffer not in frame.buffers:
             raise ParameterError(f"module {module.name} has no '{buffer}'; it has {', '.join(frame.buffers)}")
     entries = []
-    with progress_bar("modules", len(pairs)) as bar:
+    with progress_bar("modules", len(pairs), "module") as bar:
         for module, like in pairs:
             reach = {"like": like} if like else {"radius": None if module.claims == "ambient" else radius}
             truth = reference(scene, **view, rays=rays, buffers=(buffer,), **reach)  # type: ignore[arg-type]

@@ -41,7 +41,7 @@ def scaling(size: Size, repeats: int) -> dict[str, Any]:
         "frames": repeats,
         "growth": {},
     }
-    with progress_bar("settings", sum(map(len, cases.values()))) as bar:
+    with progress_bar("settings", sum(map(len, cases.values())), "setting") as bar:
         for name, settings in cases.items():
             result["growth"][name] = fitted(dict(_measured(lab, settings, repeats)))
             bar.update(len(settings))

@@ -141,7 +141,7 @@ def _views(
 ) -> list[_View]:
     """Every scene from `count` cameras, with the ray-traced truth."""
     views = []
-    with progress_bar("views", len(scenes) * count, shown=shown) as bar:
+    with progress_bar("views", len(scenes) * count, "view", shown=shown) as bar:
         for scene in scenes:
             for turn, camera in cameras(scene, count, lab, size).items():
                 truth = reference(
@@ -175,7 +175,7 @@ def _search(
     study = optuna.create_study(sampler=optuna.samplers.TPESampler(seed=seed))
     study.enqueue_trial({one.name: one.start for one in axes})
     best, least = module, float("inf")
-    with progress_bar("trials", trials, shown=shown) as bar:
+    with progress_bar("trials", trials, "trial", shown=shown) as bar:
         for _ in range(trials):
             trial = study.ask()
             tried = module.replace(**{one.name: one.suggest(trial) for one in axes})

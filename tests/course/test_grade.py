@@ -1,9 +1,13 @@
 """Grading many folders: one loops, one has NaN, one lacks its file, one does not compile; none stops another."""
 
+import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
+
 import pytest
 
 from aolab import course
-from aolab.course.grade import located
+from aolab.course.grade import Processes, checked_apart, located
 from aolab.course.results import COMPILES
 from aolab.errors import FileError, ParameterError
 
@@ -64,6 +68,37 @@ def test_an_endless_loop_is_ended_at_the_time_limit(folders, graded):
     assert ended.result.score == 0
     assert "stopped after 1 s: a loop may never end" in ended.result.error
     assert ended.seconds < 30
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stopped_before", [False, True])
+def test_processes_of_checks_can_be_ended(folders, stopped_before):
+    """Also a process that starts after the end, in a thread that was about to start it."""
+    processes = Processes()
+    with ThreadPoolExecutor(1) as pool:
+        if stopped_before:
+            processes.end()
+        waiting = pool.submit(checked_apart, folders["right"], processes=processes)
+        while not processes.running and not waiting.done():
+            time.sleep(0.001)
+        if not stopped_before:
+            processes.end()
+        assert waiting.result(timeout=60).error == f"the check ended with code {-signal.SIGKILL}"
+    assert not processes.running
+
+
+@pytest.mark.slow
+def test_an_error_ends_the_other_checks(folders):
+    """As an interrupt does. Checks that are ended have no result."""
+    seen = []
+
+    def fail(graded):
+        seen.append(graded.folder.name)
+        raise RuntimeError("no more")
+
+    with pytest.raises(RuntimeError, match="no more"):
+        course.grade([folders["empty"], folders["right"], folders["right"]], workers=2, done=fail)
+    assert seen == ["empty"]
 
 
 @pytest.mark.slow

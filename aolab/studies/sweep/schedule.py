@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ...errors import Error, ParameterError
 from ...extras import missing
-from ...progress import progress_bar
+from ...progress import progress_bar, write_line
 from ...scene.scene import Scene
 from ...version import __version__
 from . import case as one
@@ -217,7 +217,7 @@ def _workers(client: "Client") -> int:
 def _show_dashboard(client: "Client", bar: Any) -> None:
     """Print the address of Dask's dashboard above the bar; without bokeh there is no dashboard."""
     if not bar.disable and importlib.util.find_spec("bokeh"):
-        bar.write(f"Dask's dashboard: {client.dashboard_link}", file=sys.stderr)
+        write_line(f"Dask's dashboard: {client.dashboard_link}", sys.stderr)
 
 
 @contextmanager
