@@ -37,7 +37,7 @@ class _Declared(type(BaseModel)):
             with warnings.catch_warnings():  # a subclass refuses such names by an error
                 warnings.filterwarnings("ignore", ".*shadows an attribute", UserWarning)
                 # validators of the package's own classes are built at the first use: 0.07 s less at the start
-                deferred = namespace["__module__"].startswith("aolab.")
+                deferred = namespace.get("__module__", "").startswith("aolab.")  # `type(...)` names none
                 return super().__new__(cls, name, bases, namespace, **{"defer_build": deferred, **options})
         except PydanticUserError as error:
             raise ParameterError(_declaration(name, namespace, error)) from None
