@@ -4,6 +4,7 @@ import os
 import re
 import struct
 from collections.abc import Callable, Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
@@ -12,6 +13,7 @@ import moderngl
 
 from ..errors import ShaderError, suggestion
 from . import context, raw
+from .flat import EXTENSION, flattened
 from .report import told
 from .source import Constant, Declared, Source, assemble, declared
 from .words import declaration
@@ -222,18 +224,34 @@ def _compile(request: Request) -> Program:
     files = vertex.files | fragment.files | (geometry.files if geometry else set())
     stamps = {path: _stamp(path) for path in files}
     locations = {name: location for location, name in enumerate(request.outputs or ()) if "[" not in name}
+    linked = None
+    if request.vertex == FULLSCREEN and (room := _flat_vectors()):
+        with suppress(moderngl.Error):  # then the report is about the shader as it is written
+            linked = _linked(*flattened(vertex, fragment, room), None, locations)
     try:
-        linked = context.get().program(
-            vertex_shader=vertex.text,
-            geometry_shader=geometry.text if geometry else None,
-            fragment_shader=fragment.text,
-            fragment_outputs=locations,
-        )
+        linked = linked or _linked(vertex, fragment, geometry, locations)
     except moderngl.Error as error:
         stages = {"vertex_shader": vertex, "geometry_shader": geometry or vertex}
         raise ShaderError(_explained(str(error), stages, fragment, request.offered)) from None
     constants = vertex.constants | fragment.constants | (geometry.constants if geometry else set())
     return Program(linked, fragment.name, request, stamps, constants, _locations(linked, request, fragment))
+
+
+def _linked(vertex: Source, fragment: Source, geometry: Source | None, locations: dict[str, int]) -> moderngl.Program:
+    return context.get().program(
+        vertex_shader=vertex.text,
+        geometry_shader=geometry.text if geometry else None,
+        fragment_shader=fragment.text,
+        fragment_outputs=locations,
+    )
+
+
+def _flat_vectors() -> int:
+    """How many vectors of uniforms become flat varyings: none on hardware."""
+    gl = context.get()
+    if not context.is_software() or EXTENSION not in gl.extensions:
+        return 0
+    return gl.info["GL_MAX_FRAGMENT_INPUT_COMPONENTS"] // 4 - 2  # besides the position, and the place of the fragment
 
 
 def _locations(linked: moderngl.Program, request: Request, fragment: Source) -> dict[str, int]:
