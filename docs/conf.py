@@ -28,6 +28,7 @@ cache = caches / sha256(b"".join(path.read_bytes() for path in sources)).hexdige
 for outdated in set(caches.glob("*")) - {cache}:
     rmtree(outdated)
 nb_execution_cache_path = str(cache)
+os.environ["AOLAB_CACHE"] = str(cache)  # the pages share their references, which go with the pages
 nb_execution_mode = "cache"
 nb_execution_timeout = -1
 nb_execution_raise_on_error = True
