@@ -32,7 +32,7 @@ help:
 	@echo 'make long       the long tests: programs, notebooks, a browser, clusters, exercises, the installed wheel: 8 minutes'
 	@echo 'make figures    the figures and tables of the papers, and the claims they hold: 5 minutes on two cores'
 	@echo 'make fuzz       load 900 damaged files of 18 kinds: 2 minutes'
-	@echo 'make docs       build the documentation into docs/_build/html: 5 minutes, as it runs the cells; pages are cached'
+	@echo 'make docs       build the documentation into docs/_build/html: 3 minutes, as it runs the cells; pages are cached'
 	@echo 'make bench      time every pass: 1 minute'
 	@echo 'make clean      remove the files that were built; make distclean also removes .venv'
 	@echo 'PYTHON=...      the Python (3.11 or newer) that .venv is made from'

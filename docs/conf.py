@@ -34,6 +34,7 @@ nb_execution_timeout = -1
 nb_execution_raise_on_error = True
 nb_execution_show_tb = True
 nb_merge_streams = True
+nb_output_stderr = "warn"  # a warning or a notice in a cell is a mistake of the page; `-W` ends the build
 nb_render_markdown_format = "myst"  # for tables
 
 # Links that open a notebook elsewhere: only a workflow of GitHub has the address of the repository.
