@@ -8,7 +8,7 @@
 uniform mat4 view_environment_sh[3];  // of red, green and blue
 
 vec3 ambientAt(Surface surface) {
-    mat4 transfer = transferAt(surface.pixel, surface.viewNormal);
+    mat4 transfer = transferOf(surface);
     vec3 irradiance;
     for (int i = 0; i < 3; ++i) irradiance[i] = shDot(view_environment_sh[i], transfer);
     irradiance = max(irradiance, 0.0);  // four bands can ring below 0

@@ -18,7 +18,7 @@ vec3 directAt(Surface surface) {
     if (lights == 0) return vec3(0.0);
 
     vec3 worldPos = litPosOf(surface), normal = surface.viewNormal;
-    mat4 windowed = shWindow(transferAt(surface.pixel, normal), SH_ZONAL * shLightLobe(shHanning(light_window)));
+    mat4 windowed = shWindow(transferOf(surface), SH_ZONAL * shLightLobe(shHanning(light_window)));
     vec3 irradiance = vec3(0.0);
     for (int i = 0; i < lights; ++i) {
         float arriving;

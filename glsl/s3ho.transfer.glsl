@@ -1,4 +1,5 @@
 // The transfer function of a pixel in S3HO, occlusion and cosine in one: from distant light to irradiance. View space.
+// It is included after lib/surface.glsl.
 
 #include "lib/sh.glsl"
 
@@ -18,8 +19,8 @@ mat4 withinBounds(mat4 c) {
 
 // c = c_cos(n) - o: an open surface's, less the blocked part (s3ho.frag). Where every direction is blocked, o is the sum
 // over all samples, which is c_cos in the mean only; the bounds take away the difference.
-mat4 transferAt(ivec2 pixel, vec3 normal) {
-    mat4 blocked = mat4(texelFetch(occlusion0, pixel, 0), texelFetch(occlusion1, pixel, 0),
-                        texelFetch(occlusion2, pixel, 0), texelFetch(occlusion3, pixel, 0));
-    return withinBounds(shClampedCosine(normal) - blocked);
+mat4 transferOf(Surface surface) {
+    vec2 uv = gl_FragCoord.xy * texel_size;
+    mat4 blocked = mat4(texture(occlusion0, uv), texture(occlusion1, uv), texture(occlusion2, uv), texture(occlusion3, uv));
+    return withinBounds(shClampedCosine(surface.viewNormal) - blocked);
 }
