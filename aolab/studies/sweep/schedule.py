@@ -2,7 +2,6 @@
 
 import importlib.util
 import itertools
-import os
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -18,6 +17,7 @@ from ...scene.scene import Scene
 from ...version import __version__
 from . import case as one
 from .case import Case, Settings
+from .local_cluster import local_cluster
 from .measured import buffers_of
 from .records import Records
 
@@ -26,10 +26,6 @@ if TYPE_CHECKING:
 
 TRIES = 3  # a case whose worker dies is computed on another worker; after so many deaths it counts as failed
 CONNECT, WORKER_STARTS = 30, 600  # seconds until a scheduler, and its first worker, must be there
-DASK = {
-    "distributed.scheduler.allowed-failures": 0,  # `_alone` counts the deaths
-    "distributed.admin.large-graph-warning-threshold": "10GB",  # scenes are part of the graph
-}
 Result = tuple[str, dict[str, Any], dict[str, bytes]]  # of a case: its name, its record, its files
 
 
@@ -222,13 +218,9 @@ def _show_dashboard(client: "Client", bar: Any) -> None:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """A client of the cluster at `scheduler`, or of `workers` processes on this machine, which end with it.
-
-    Software rendering's threads are divided among the workers.
-    """
+    """A client of the cluster at `scheduler`, or of `workers` processes on this machine, which end with it."""
     try:
-        from dask import config
-        from distributed import Client, LocalCluster
+        from distributed import Client
     except ImportError as error:
         raise missing("sweep", error) from error
     if scheduler is not None:
@@ -243,14 +235,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
                 raise Error(f"the Dask scheduler at {scheduler} has no worker ({error})") from error
             yield client
         return
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    threads = {"LP_NUM_THREADS": str(max(1, cores // workers))}
-    cluster = {"n_workers": workers, "threads_per_worker": 1, "env": threads, "dashboard_address": ":0"}
-    with (
-        config.set(DASK),
-        LocalCluster(**cluster) as local,
-        Client(local) as client,
-    ):
+    with local_cluster(workers) as cluster, Client(cluster) as client:
         yield client
 
 
