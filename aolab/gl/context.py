@@ -39,10 +39,10 @@ def get() -> moderngl.Context:
     if _state.context is None:
         with postponed():  # moderngl calls the loader of functions from C, and does not look for exceptions
             _state.context = _create()
-        _state.binding = egl.bound()
-        _state.thread, _state.process = threading.get_ident(), os.getpid()
-        _state.loop = running_loop()
-        atexit.register(release)
+            _state.binding = egl.bound()
+            _state.thread, _state.process = threading.get_ident(), os.getpid()
+            _state.loop = running_loop()
+            atexit.register(release)
     elif os.getpid() != _state.process:
         raise ContextError(
             f"this process ({os.getpid()}) was forked from {_state.process}, which holds the OpenGL context, and a "

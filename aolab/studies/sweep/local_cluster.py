@@ -91,7 +91,7 @@ def _end_at_once(cluster: "LocalCluster", runner: "LoopRunner") -> None:
     _kill_workers()
     with suppress(Exception):  # TimeoutError; workers that were about to start
         cluster.close(timeout=0.5)
-    runner.stop(timeout=0.5)
+    runner.stop(timeout=1)
     for _ in range(4):  # a worker that was about to start
         _kill_workers()
         time.sleep(0.05)

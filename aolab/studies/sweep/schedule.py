@@ -60,7 +60,7 @@ def run(
         raise ParameterError(f"on_error = {on_error!r} is not one of: record, raise")
     if workers < 0:
         raise ParameterError(f"workers = {workers} is not a whole number from 0 on")
-    named = [(one.identity(case, settings), case) for case in cases]
+    named = _named(cases, settings, progress)
     known = {name: record for name, _ in named if records and (record := records.load(name))}
     wanted = {
         name: case for name, case in named if name not in known or (retry_failed and known[name]["status"] != "ok")
@@ -77,6 +77,15 @@ def run(
                 if on_error == "raise" and record["status"] != "ok":
                     raise Error(f"sweep: {wanted[name].title}: {record['error']}")
     return [{**known[name], **one.plain(case.columns)} for name, case in named]  # another sweep may name it otherwise
+
+
+def _named(cases: Sequence[Case], settings: Settings, progress: bool | None) -> list[tuple[str, Case]]:
+    named = []
+    with progress_bar("names", len(cases), "case", shown=progress) as bar:
+        for case in cases:
+            named.append((one.identity(case, settings), case))
+            bar.update()
+    return named
 
 
 def _here(cases: dict[str, Case], settings: Settings) -> Generator[Result]:
