@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import moderngl
 
 from ..errors import ContextError
+from ..interrupts import postponed
 from . import egl
 
 if TYPE_CHECKING:
@@ -36,11 +37,12 @@ _state = _State()
 def get() -> moderngl.Context:
     """The context of this process. Raises `ContextError` from another thread or a forked child, or if GL is missing."""
     if _state.context is None:
-        _state.context = _create()
-        _state.binding = egl.bound()
-        _state.thread, _state.process = threading.get_ident(), os.getpid()
-        _state.loop = running_loop()
-        atexit.register(release)
+        with postponed():  # moderngl calls the loader of functions from C, and does not look for exceptions
+            _state.context = _create()
+            _state.binding = egl.bound()
+            _state.thread, _state.process = threading.get_ident(), os.getpid()
+            _state.loop = running_loop()
+            atexit.register(release)
     elif os.getpid() != _state.process:
         raise ContextError(
             f"this process ({os.getpid()}) was forked from {_state.process}, which holds the OpenGL context, and a "

@@ -12,6 +12,7 @@ from types import MappingProxyType
 import moderngl
 
 from ..errors import ShaderError, suggestion
+from ..interrupts import postponed
 from . import context, raw
 from .flat import EXTENSION, flattened
 from .report import told
@@ -238,12 +239,13 @@ def _compile(request: Request) -> Program:
 
 
 def _linked(vertex: Source, fragment: Source, geometry: Source | None, locations: dict[str, int]) -> moderngl.Program:
-    return context.get().program(
-        vertex_shader=vertex.text,
-        geometry_shader=geometry.text if geometry else None,
-        fragment_shader=fragment.text,
-        fragment_outputs=locations,
-    )
+    with postponed():  # moderngl calls Python from C, and does not look for exceptions
+        return context.get().program(
+            vertex_shader=vertex.text,
+            geometry_shader=geometry.text if geometry else None,
+            fragment_shader=fragment.text,
+            fragment_outputs=locations,
+        )
 
 
 def _flat_vectors() -> int:

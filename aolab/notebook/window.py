@@ -8,6 +8,7 @@ import numpy as np
 
 from ..errors import ContextError
 from ..extras import need
+from ..interrupts import postponed
 from .viewer import Viewer
 
 VERTEX = """#version 330
@@ -62,7 +63,8 @@ class Window:
         self._glfw.make_context_current(self._window)
         loader: Any = _Loader(self._glfw)
         self._context = moderngl.create_context(require=330, context=loader)
-        self._program = self._context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
+        with postponed():
+            self._program = self._context.program(vertex_shader=VERTEX, fragment_shader=FRAGMENT)
         self._triangle = self._context.vertex_array(self._program, [])
         self._texture = self._context.texture(viewer.size, 3, alignment=1)
         self._place: tuple[float, float] | None = None  # of the pointer, while a button is down

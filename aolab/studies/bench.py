@@ -113,7 +113,8 @@ def _process(arguments: list[str], repeats: int) -> dict[str, float]:
     times = []
     for _ in range(repeats):
         start = perf_counter()
-        subprocess.run([sys.executable, *arguments], check=True, stdout=subprocess.DEVNULL, env=os.environ)
+        command = [sys.executable, *arguments]  # in a session of its own, since Ctrl-C ends this process alone
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, env=os.environ, start_new_session=True)
         times.append(perf_counter() - start)
     return summary(times)
 

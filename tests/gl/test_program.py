@@ -1,6 +1,7 @@
 """Programs: compiler errors name our lines; edits are picked up; the last good program stays."""
 
 import os
+import sys
 
 import numpy as np
 import pytest
@@ -193,3 +194,34 @@ def test_an_edit_of_the_shadows_shader_draws_shadows_anew(edited):
     lab.reload()
     after = lab.render(scene, "none")["direct"]
     assert after.sum() > 1.01 * before.sum()
+
+
+# --- interrupts
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="timers of POSIX")
+def test_an_interrupt_in_the_compilation_does_not_end_the_process(python):
+    """moderngl's C code calls Python for each uniform, and crashes if that raises: 3 of 3 runs without `postponed`."""
+    done = python(
+        """
+        import random, signal
+        from aolab.gl.program import Programs
+        programs, interrupted = Programs(), 0
+        uniforms = "".join(f"uniform vec4 x{i};\\n" for i in range(60))
+        total = " + ".join(f"x{i}" for i in range(60))
+        random.seed(1)
+        for number in range(200):
+            shader = f"{uniforms}out vec4 color;\\nvoid main() {{ color = {number}.0 * ({total}); }}\\n"
+            try:
+                signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
+                signal.setitimer(signal.ITIMER_REAL, random.uniform(0.0005, 0.005))
+                programs.get(shader)
+                signal.setitimer(signal.ITIMER_REAL, 0)
+            except KeyboardInterrupt:
+                interrupted += 1
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+        print(interrupted > 20)
+        """
+    )
+    assert (done.returncode, done.stdout) == (0, "True\n"), done.stderr

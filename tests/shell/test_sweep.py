@@ -3,9 +3,11 @@
 import json
 import os
 import re
+import signal
 import socket
 import subprocess
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -50,6 +52,36 @@ def test_dry_run_lists_the_cases_and_writes_nothing(aolab, spec):
     assert [path.name for path in Path().iterdir()] == ["spec.toml"]
     listed = json.loads(aolab("sweep", spec(8), "--dry-run", "--shard", "1/4", "--json").out)
     assert len(listed["cases"]) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+@pytest.mark.parametrize("phase", ["starting", "computing"])
+def test_an_interrupt_ends_the_workers_too(spec, phase):
+    """A terminal sends SIGINT to all processes. The error output ends when the last process has ended."""
+    name = spec(8)
+    Path(name).write_text(
+        Path(name).read_text().replace("reference = false", f"reference = false\nseed = {[*range(200)]}")
+    )
+    command = [sys.executable, "-m", "aolab.shell.cli", "sweep", name, "-o", "out", "--workers", "2"]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    here = Path("out/records")
+    deadline = time.monotonic() + 60
+    while len(list(here.glob("*.json"))) < 3 and time.monotonic() < deadline:
+        time.sleep(0.02)
+        if phase == "starting" and len(children(process.pid)) >= 3:  # two workers, and the tracker of their files
+            break
+    os.killpg(process.pid, signal.SIGINT)
+    errors = process.communicate(timeout=30)[1]
+    assert process.returncode == 130
+    assert [line for line in errors.splitlines() if "dashboard" not in line] == ["aolab: interrupted"]
+    assert len(list(here.glob("*.json"))) < 800
+
+
+def children(pid: int) -> list[int]:
+    """The processes that a process has started."""
+    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(pid)], capture_output=True, text=True, check=False)
+    return [int(line) for line in listed.stdout.split()]
 
 
 def test_shards_then_the_table(aolab, spec):

@@ -90,7 +90,7 @@ def run_plan(plan: Plan, folder: Path | None, *, shard: str | None = None, **how
     from .table import SweepTable  # imports pandas: a missing extra is refused before the work
 
     check_scenes(plan)
-    cases = plan.cases()
+    cases = plan.cases(how.get("progress"))
     mine = schedule.shard_of(cases, shard)
     about = description(plan)
     records = Records(folder) if folder is not None else None

@@ -16,6 +16,7 @@ from ...gl.texture import Size, check_size
 from ...input import read_text
 from ...modules import MODULES, Module, find
 from ...modules.parameters import Choice
+from ...progress import progress_bar
 from ...scene.camera import Camera
 from .case import Case, Settings, loaded, module_name, question, scene_name
 from .measured import Measure, default, needs_truth, parse
@@ -149,24 +150,26 @@ class Plan:
             for name, module in zip(names, self.modules, strict=True)
         ]
 
-    def cases(self) -> list[Case]:
+    def cases(self, progress: bool | None = None) -> list[Case]:
         """All cases, without repeats. Cases that share a truth are neighbours; so are those that share a G-buffer.
 
-        Raises `ParameterError` for a parameter that no case takes.
+        `progress` is that of `progress_bar`: 100,000 cases take seconds. Raises `ParameterError` for a parameter that
+        no case takes.
         """
         found: dict[str, Case] = {}
         points = self.points()
         scenes = zip(self.scenes, self.scene_labels, strict=True)
         modules = list(zip(self.modules, self.module_labels, strict=True))
-        for (scene, scene_label), size, (camera_name, camera), (module, module_label) in itertools.product(
-            scenes, self.sizes, self.cameras.items(), modules
-        ):
-            labels = scene_label, module_label
-            for values in (taken(module, point) for point in points):
-                for seed in self.seeds:
-                    case = Case(scene, module, values, size, seed, self.accumulate, camera, camera_name, *labels)
-                    key = repr((id(scene), id(module), size, camera_name, seed, sorted(values.items(), key=repr)))
-                    found.setdefault(key, case)
+        views = list(itertools.product(scenes, self.sizes, self.cameras.items(), modules))
+        with progress_bar("plan", len(views) * len(points), "point", shown=progress) as bar:
+            for (scene, scene_label), size, (camera_name, camera), (module, module_label) in views:
+                labels = scene_label, module_label
+                for values in (taken(module, point) for point in points):
+                    for seed in self.seeds:
+                        case = Case(scene, module, values, size, seed, self.accumulate, camera, camera_name, *labels)
+                        key = repr((id(scene), id(module), size, camera_name, seed, sorted(values.items(), key=repr)))
+                        found.setdefault(key, case)
+                    bar.update()
         for name in points[0]:
             if not any(name in case.parameters for case in found.values()):
                 raise ParameterError(f"sweep: no case takes '{name}', a parameter of {_owner(self.modules, name)}")

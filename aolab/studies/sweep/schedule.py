@@ -2,7 +2,6 @@
 
 import importlib.util
 import itertools
-import os
 import sys
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
@@ -18,6 +17,7 @@ from ...scene.scene import Scene
 from ...version import __version__
 from . import case as one
 from .case import Case, Settings
+from .local_cluster import local_cluster
 from .measured import buffers_of
 from .records import Records
 
@@ -26,10 +26,6 @@ if TYPE_CHECKING:
 
 TRIES = 3  # a case whose worker dies is computed on another worker; after so many deaths it counts as failed
 CONNECT, WORKER_STARTS = 30, 600  # seconds until a scheduler, and its first worker, must be there
-DASK = {
-    "distributed.scheduler.allowed-failures": 0,  # `_alone` counts the deaths
-    "distributed.admin.large-graph-warning-threshold": "10GB",  # scenes are part of the graph
-}
 Result = tuple[str, dict[str, Any], dict[str, bytes]]  # of a case: its name, its record, its files
 
 
@@ -64,7 +60,7 @@ def run(
         raise ParameterError(f"on_error = {on_error!r} is not one of: record, raise")
     if workers < 0:
         raise ParameterError(f"workers = {workers} is not a whole number from 0 on")
-    named = [(one.identity(case, settings), case) for case in cases]
+    named = _named(cases, settings, progress)
     known = {name: record for name, _ in named if records and (record := records.load(name))}
     wanted = {
         name: case for name, case in named if name not in known or (retry_failed and known[name]["status"] != "ok")
@@ -81,6 +77,15 @@ def run(
                 if on_error == "raise" and record["status"] != "ok":
                     raise Error(f"sweep: {wanted[name].title}: {record['error']}")
     return [{**known[name], **one.plain(case.columns)} for name, case in named]  # another sweep may name it otherwise
+
+
+def _named(cases: Sequence[Case], settings: Settings, progress: bool | None) -> list[tuple[str, Case]]:
+    named = []
+    with progress_bar("names", len(cases), "case", shown=progress) as bar:
+        for case in cases:
+            named.append((one.identity(case, settings), case))
+            bar.update()
+    return named
 
 
 def _here(cases: dict[str, Case], settings: Settings) -> Generator[Result]:
@@ -222,13 +227,9 @@ def _show_dashboard(client: "Client", bar: Any) -> None:
 
 @contextmanager
 def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
-    """A client of the cluster at `scheduler`, or of `workers` processes on this machine, which end with it.
-
-    Software rendering's threads are divided among the workers.
-    """
+    """A client of the cluster at `scheduler`, or of `workers` processes on this machine, which end with it."""
     try:
-        from dask import config
-        from distributed import Client, LocalCluster
+        from distributed import Client
     except ImportError as error:
         raise missing("sweep", error) from error
     if scheduler is not None:
@@ -243,14 +244,7 @@ def _client(workers: int, scheduler: str | None) -> Iterator["Client"]:
                 raise Error(f"the Dask scheduler at {scheduler} has no worker ({error})") from error
             yield client
         return
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    threads = {"LP_NUM_THREADS": str(max(1, cores // workers))}
-    cluster = {"n_workers": workers, "threads_per_worker": 1, "env": threads, "dashboard_address": ":0"}
-    with (
-        config.set(DASK),
-        LocalCluster(**cluster) as local,
-        Client(local) as client,
-    ):
+    with local_cluster(workers) as cluster, Client(cluster) as client:
         yield client
 
 
