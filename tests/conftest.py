@@ -37,7 +37,7 @@ LONG = (
     "test_readme", "test_bake", "test_interrupts", "test_notebooks", "test_claims", "test_reproduce", "test_sweep",
     "test_quality", "test_wheel", "test_jupyterlab", "test_otter", "test_grade", "test_measuring", "test_mitsuba",
     "test_exercises", "test_explorer", "test_explain", "test_against_truth", "test_pyrender_depth", "test_viewer",
-    "test_peers", "test_streams", "test_lines_run",
+    "test_peers", "test_streams", "test_lines_run", "test_blocks_run",
 )  # fmt: skip
 
 
