@@ -17,7 +17,7 @@ OWNERS: dict[str, tuple[str, ...]] = {
     ),
     "the lights": (
         "lights", "light_slots", "light_kind", "light_tile", "light_position", "light_direction", "light_color",
-        "light_spot_cos",
+        "light_spot_cos", "suns_alone", "one_tile", "tile_from_world", "tile_place",
     ),
     "the display": ("exposure", "filmic_tone"),
     "the reflective shadow maps": ("rsm_tiles", "rsm_box"),

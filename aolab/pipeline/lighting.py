@@ -109,9 +109,17 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
         "light_direction": direction.tobytes(),
         "light_color": color.tobytes(),
         "light_spot_cos": spot_cos.tobytes(),
+        "tile_from_world": shadows.rows[0, :4].tobytes(),
+        "tile_place": shadows.rows[0, 4].tobytes(),
+    }
+    constants = {
+        "lights": count,
+        "light_slots": slots,
+        "suns_alone": all(isinstance(one, DirectionalLight) for one in scene.lights),
+        "one_tile": len(shadows.rows) == 1,
     }
     textures = {"shadow_atlas": shadows.atlas, "shadow_table": shadows.table}
-    return Bindings("the lights", textures, uniforms, {"lights": count, "light_slots": slots})
+    return Bindings("the lights", textures, uniforms, constants)
 
 
 def names(module: Module) -> list[str]:

@@ -46,6 +46,7 @@ class ShadowMaps:
 
     atlas: moderngl.Texture
     table: moderngl.Texture
+    rows: np.ndarray  # (tiles, 5, 4) float32: those of `table`
     first_tile: tuple[int, ...]  # of each light; -1 for a light without shadow
 
 
@@ -97,16 +98,16 @@ def draw_shadows(rasterizer: Rasterizer, settings: ShadowSettings) -> ShadowMaps
             f"{count} shadow tiles; the limit is {MAX_SHADOW_TILES}. Set shadow=False on the lesser lights"
         )
     auto = next(size for most, size in TILE_SIZES.items() if count <= most) if count else 1
-    atlas, table = draw_tiles(
+    atlas, table, rows = draw_tiles(
         rasterizer, projections, (settings.resolution or auto) if count else 1, settings.slope_bias
     )
-    return ShadowMaps(atlas, table, tuple(first_tile))
+    return ShadowMaps(atlas, table, rows, tuple(first_tile))
 
 
 def draw_tiles(
     rasterizer: Rasterizer, projections: Sequence[tuple[np.ndarray, np.ndarray]], tile: int, slope_bias: float
-) -> tuple[moderngl.Texture, moderngl.Texture]:
-    """The atlas of the depths that the projections see, `tile` pixels a side each, and its table (`ShadowMaps`).
+) -> tuple[moderngl.Texture, moderngl.Texture, np.ndarray]:
+    """The atlas of the depths that the projections see, `tile` pixels a side each, its table and rows (`ShadowMaps`).
 
     Raises `ParameterError` for an atlas that is larger than the driver allows.
     """
@@ -137,4 +138,4 @@ def draw_tiles(
         table[row, :4] = (clip @ view).T
         texel = 2 / clip[0, 0] / tile  # its width, at the distance 1 if the rays are not parallel
         table[row, 4] = row % side / side, row // side / side, 1 / side, slope_bias * texel
-    return atlas, make((5, len(table)), "RGBA32F", table.tobytes())
+    return atlas, make((5, len(table)), "RGBA32F", table.tobytes()), table

@@ -62,7 +62,7 @@ def draw_virtual_lights(
     padded = np.zeros((max(1, len(rows)), 3, 4), np.float32)  # GL has no empty texture
     padded[: len(rows), :, :3], padded[: len(rows), :2, 3] = rows, np.stack([bounds, far], axis=1)
     projections = [_projection(scene, row, is_far) for row, is_far in zip(rows, far, strict=True)]
-    atlas, table = draw_tiles(rasterizer, projections, step.resolution if projections else 1, step.slope_bias)
+    atlas, table, _ = draw_tiles(rasterizer, projections, step.resolution if projections else 1, step.slope_bias)
     texels = make((3, len(padded)), "RGBA32F", padded.tobytes())
     return VirtualLightMaps(texels, atlas, table, len(rows), Bindings("the clamp of virtual lights", uniforms=clamp))
 
@@ -125,7 +125,9 @@ def irradiance(state: SurfaceState, step: VirtualLights, maps: VirtualLightMaps,
         gl.enable_only(moderngl.BLEND)
         gl.blend_func = moderngl.ONE, moderngl.ONE
         for first in range(0, maps.count, BATCH):
-            lights = Bindings("the virtual lights", textures, {"first_light": first, "light_count": maps.count})
+            lights = Bindings(
+                "the virtual lights", textures, {"first_light": first, "light_count": maps.count}, {"one_tile": False}
+            )
             runner.run(step, [*known, lights], view.size, targets=targets)
     finally:
         gl.enable_only(moderngl.NOTHING)

@@ -4,6 +4,7 @@
 
 const int lights;
 const int light_slots;   // max(lights, 1): GLSL has no empty arrays
+const bool suns_alone;   // all lights are directional
 
 uniform int light_kind[light_slots];
 uniform vec3 light_position[light_slots];
@@ -12,21 +13,23 @@ uniform vec3 light_color[light_slots];
 uniform vec2 light_spot_cos[light_slots];
 uniform int light_tile[light_slots];            // the light's first shadow tile, or -1 without shadow
 
+int kindOf(int i) { return suns_alone ? DIRECTIONAL : light_kind[i]; }
+
 // The unit direction towards light `i`, world space. `arriving` is the factor from light_color[i] to irradiance,
 // without shadows.
 vec3 towardsLightAt(int i, vec3 worldPos, out float arriving) {
-    return towardsLight(light_kind[i], light_position[i], light_direction[i], light_spot_cos[i], worldPos, arriving);
+    return towardsLight(kindOf(i), light_position[i], light_direction[i], light_spot_cos[i], worldPos, arriving);
 }
 
 // The distance of light `i`, scene units.
 float distanceOf(int i, vec3 worldPos) {
-    return light_kind[i] == DIRECTIONAL ? 3.0e38 : distance(light_position[i], worldPos);
+    return kindOf(i) == DIRECTIONAL ? 3.0e38 : distance(light_position[i], worldPos);
 }
 
 // The shadow tile of light `i` that sees `worldPos`; -1 for a light without shadow map.
 int tileOf(int i, vec3 toLight) {
     int tile = light_tile[i];
-    return tile >= 0 && light_kind[i] == POINT ? tile + cubeFace(-toLight) : tile;
+    return tile >= 0 && kindOf(i) == POINT ? tile + cubeFace(-toLight) : tile;
 }
 
 // The unshadowed share of light `i` at `worldPos`; 1 for a light without shadow map. `toLight`: unit, world space.

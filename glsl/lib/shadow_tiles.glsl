@@ -7,14 +7,23 @@ uniform sampler2DShadow shadow_atlas;
 // (w) at the distance 1, for tan α = 1.
 uniform sampler2D shadow_table;
 
+const bool one_tile;   // the table has a single row, and these uniforms hold it: on llvmpipe, the fetches take longer
+uniform mat4 tile_from_world;
+uniform vec4 tile_place;
+
 mat4 tileFromWorld(int tile) {
+    if (one_tile) return tile_from_world;
     return mat4(texelFetch(shadow_table, ivec2(0, tile), 0), texelFetch(shadow_table, ivec2(1, tile), 0),
                 texelFetch(shadow_table, ivec2(2, tile), 0), texelFetch(shadow_table, ivec2(3, tile), 0));
 }
 
+vec4 tilePlace(int tile) {
+    return one_tile ? tile_place : texelFetch(shadow_table, ivec2(4, tile), 0);
+}
+
 // The unshadowed share at `worldPos` of the light that this tile belongs to.
 float tileShadow(int tile, vec3 worldPos) {
-    return shadowAt(shadow_atlas, tileFromWorld(tile), texelFetch(shadow_table, ivec2(4, tile), 0).xyz, worldPos);
+    return shadowAt(shadow_atlas, tileFromWorld(tile), tilePlace(tile).xyz, worldPos);
 }
 
 // The bias b of a tile, in scene units: the map lies by so much behind the surface at `worldPos`, along the light.
@@ -23,5 +32,5 @@ float tileShadow(int tile, vec3 worldPos) {
 float tileBias(int tile, vec3 worldPos, float facing) {
     float distanceFactor = (tileFromWorld(tile) * vec4(worldPos, 1.0)).w;   // 1 if the light's rays are parallel
     float cosine = clamp(facing, 0.05, 1.0);
-    return texelFetch(shadow_table, ivec2(4, tile), 0).w * distanceFactor * sqrt(1.0 - cosine * cosine) / cosine;
+    return tilePlace(tile).w * distanceFactor * sqrt(1.0 - cosine * cosine) / cosine;
 }

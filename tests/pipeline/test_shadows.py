@@ -1,5 +1,7 @@
 """Shadow maps' resolution and bias, and the gap of the bias filled in image space, against geometry."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import small_scenes
@@ -7,6 +9,7 @@ import small_scenes
 import aolab
 from aolab import Camera, DirectionalLight, Environment, Material, Module, PointLight, Scene, SpotLight
 from aolab.gl import context
+from aolab.pipeline import lighting
 from aolab.pipeline.shadows import ShadowSettings
 from aolab.scene.lights import Light
 
@@ -164,3 +167,28 @@ def test_maps_that_the_driver_has_no_room_for_are_refused_with_the_largest_that_
         lab.render(crowd, "none", shadow_resolution=8)
     with pytest.raises(aolab.ParameterError, match="shadow_bias = 'slope' is not valid"):
         lab.render(crowd, "none", shadow_bias="slope")
+
+
+@pytest.mark.parametrize("kind", ["directional", "spot"])
+def test_one_tile_in_uniforms_is_the_row_of_the_table(kind, monkeypatch):
+    """Scenes with one tile, and with suns alone, have shorter shaders: the light is that of the plain ones."""
+    short = aolab.Lab((96, 72)).render(scene(kind), "none")["direct"]
+    lamps = lighting.lamps
+
+    def plain(*given):
+        made = lamps(*given)
+        assert made.constants["one_tile"]
+        assert made.constants["suns_alone"] == (kind == "directional")
+        return replace(made, constants={**made.constants, "one_tile": False, "suns_alone": False})
+
+    monkeypatch.setattr(lighting, "lamps", plain)
+    np.testing.assert_array_equal(short, aolab.Lab((96, 72)).render(scene(kind), "none")["direct"])
+
+
+def test_lights_of_several_tiles_or_kinds_read_the_table(monkeypatch):
+    lamps, seen = lighting.lamps, []
+    monkeypatch.setattr(lighting, "lamps", lambda *given: seen.append(lamps(*given)) or seen[-1])
+    both = scene("directional").replace(lights=(light("directional"), light("spot")))
+    for one in (scene("point"), both):
+        assert aolab.Lab((32, 24)).render(one, "none")["direct"].any()
+    assert [(made.constants["one_tile"], made.constants["suns_alone"]) for made in seen] == [(False, False)] * 2
