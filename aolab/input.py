@@ -66,10 +66,13 @@ def read_file(path: str | PathLike[str], what: str, budget: Budget) -> bytes:
 
 
 def read_text(path: str | PathLike[str], what: str) -> str:
-    """The text of a file in UTF-8. Raises `FileError` as `read_file` does, and for another encoding."""
+    """The text of a file in UTF-8, without the mark of byte order that some editors write.
+
+    Raises `FileError` as `read_file` does, and for another encoding.
+    """
     data = read_file(path, what, Budget())
     try:
-        return data.decode()
+        return data.decode().removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         raise FileError(f"{what} is no text in UTF-8: byte {error.start} is {data[error.start]:#x}") from None
 

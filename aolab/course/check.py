@@ -69,7 +69,7 @@ def text_of(folder: Path, file: str) -> str:
     try:
         if path.stat().st_size > LONGEST:
             raise FileError(f"{path.name} has more than {LONGEST >> 20} MiB")
-        return path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8-sig")  # an editor may have written a mark of byte order
     except FileNotFoundError:
         there = sorted(one.name for one in folder.iterdir()) if folder.is_dir() else []
         raise FileError(f"no file {path.name} in {folder}; there are: {', '.join(there)[:200] or 'none'}") from None

@@ -100,6 +100,8 @@ def _existing(text: str) -> Path:
         exists = path.is_file()
     except (OSError, ValueError) as error:
         raise FileError(f"'{_short(text)}' is no file name: {getattr(error, 'strerror', None) or error}") from error
+    if not exists and path.exists():
+        raise FileError(f"{path} is no file; name the shader or the Python file in it")
     if not exists:
         beside = [str(one) for one in path.parent.glob(f"*{path.suffix}")] if path.parent.is_dir() else []
         raise FileError(f"no file {path}{suggestion(text, beside)}")

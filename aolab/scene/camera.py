@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import SceneError
+from ..maths.numbers import numbers
 from ..maths.transforms import look_along, orthographic, perspective
 
 Vec3 = tuple[float, float, float]
@@ -33,10 +34,14 @@ class Camera:
 
     def __post_init__(self) -> None:
         for name in ("eye", "target", "up"):
-            value = np.asarray(getattr(self, name), float)
-            if value.shape != (3,) or not np.isfinite(value).all():
+            value = numbers(getattr(self, name))
+            if value is None or value.shape != (3,) or not np.isfinite(value).all():
                 raise SceneError(f"camera: {name} = {getattr(self, name)} is not three finite numbers")
             object.__setattr__(self, name, tuple(value.tolist()))
+        for name in ("fov", "ortho", "near", "far"):
+            value = getattr(self, name)
+            if (found := numbers(value)) is None or (value is not None and found.shape):
+                raise SceneError(f"camera: {name} = {value!r:.80} is not a number")
         if not 0 < self.fov < 180:
             raise SceneError(f"camera: fov = {self.fov} is outside (0, 180) degrees")
         forward = np.subtract(self.target, self.eye)

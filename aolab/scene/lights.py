@@ -5,14 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
+from ..maths.numbers import numbers
 from .camera import Vec3
 
 
 def _check(light: object, **values: object) -> None:
     for name, value in values.items():
-        array = np.asarray(value, float)
-        if not np.isfinite(array).all():
-            raise SceneError(f"{type(light).__name__}: {name} = {value} is not finite")
+        array = numbers(value)
+        if array is None or array.shape != (3,) or not np.isfinite(array).all():
+            raise SceneError(f"{type(light).__name__}: {name} = {value!r:.80} is not three finite numbers")
         if name in ("intensity", "irradiance") and (array < 0).any():
             raise SceneError(f"{type(light).__name__}: {name} = {value} is negative")
         if name == "direction" and not np.linalg.norm(array) > 0:
@@ -56,7 +57,8 @@ class SpotLight:
 
     def __post_init__(self) -> None:
         _check(self, position=self.position, direction=self.direction, intensity=self.intensity)
-        if not 0 <= self.inner < self.outer < 90:
+        angles = numbers((self.inner, self.outer))
+        if angles is None or not 0 <= angles[0] < angles[1] < 90:
             raise SceneError(f"SpotLight: inner = {self.inner}, outer = {self.outer} are not 0 <= inner < outer < 90")
 
 

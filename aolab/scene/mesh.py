@@ -11,6 +11,7 @@ from ..errors import Notice, SceneError
 from ..maths.connected import connected
 from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
+from ..maths.numbers import numbers
 from ..maths.tangents import mikktspace
 
 Wrap = Literal["repeat", "mirror", "clamp"]
@@ -98,12 +99,21 @@ class Material:
 
     def __post_init__(self) -> None:
         what = f"material '{self.name}'"
-        color = np.asarray(self.base_color, float)
-        if color.shape != (3,) or not np.isfinite(color).all() or (color < 0).any() or (color > 1).any():
+        color = numbers(self.base_color)
+        if (
+            color is None
+            or color.shape != (3,)
+            or not np.isfinite(color).all()
+            or (color < 0).any()
+            or (color > 1).any()
+        ):
             raise SceneError(f"{what}: base_color = {self.base_color} is not three numbers in [0, 1]")
-        emission = np.asarray(self.emission, float)
-        if emission.shape != (3,) or not np.isfinite(emission).all() or (emission < 0).any():
+        emission = numbers(self.emission)
+        if emission is None or emission.shape != (3,) or not np.isfinite(emission).all() or (emission < 0).any():
             raise SceneError(f"{what}: emission = {self.emission} is not three finite numbers from 0")
+        for name in ("alpha", "normal_scale"):
+            if numbers(getattr(self, name)) is None:
+                raise SceneError(f"{what}: {name} = {getattr(self, name)!r:.80} is not a number")
         if not 0 <= self.alpha <= 1:
             raise SceneError(f"{what}: alpha = {self.alpha} is outside [0, 1]")
         if not np.isfinite(self.normal_scale):
@@ -158,7 +168,13 @@ class Mesh:
 
     def __post_init__(self) -> None:
         what = f"mesh '{self.name}'"
+        if not isinstance(self.material, Material):
+            raise SceneError(f"{what}: material = {self.material!r:.80} is not a Material")
         faces = np.asarray(self.faces)
+        for name in ("vertices", "faces"):
+            value = getattr(self, name)
+            if not isinstance(value, np.ndarray) and numbers(value) is None:
+                raise SceneError(f"{what}: {name} = {value!r:.80} are not numbers")
         if not np.size(self.vertices) or not faces.size:
             raise SceneError(f"{what} is empty: {len(self.vertices)} vertices, {len(faces)} triangles")
         vertices = _array(self.vertices, (3,), np.float32, f"{what}: vertices")

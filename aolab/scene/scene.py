@@ -90,6 +90,8 @@ class Scene:
                 f"scene '{self.name}': environment = {self.environment!r:.80} is not an Environment; "
                 "make one with Environment.constant, .sky, .load or .light_probe"
             )
+        if self.camera is not None and not isinstance(self.camera, Camera):
+            raise SceneError(f"scene '{self.name}': camera = {self.camera!r:.80} is not a Camera")
         if not self.instances:
             raise SceneError(f"scene '{self.name}' is empty: it holds no mesh")
         if self.environment is None and not self.lights:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 import aolab
+from aolab import paths
 from aolab.errors import FileError, ParameterError, ShaderError
 from aolab.modules import MODULES, SSAO, SSDO, find
 
@@ -158,3 +159,17 @@ def test_a_mistake_is_named_with_its_place(lab, boxes, folder, name, error, mess
         (folder / file).write_text(text)
     with pytest.raises(error, match=message):
         lab.render(boxes, f"{folder}/{name}")
+
+
+def test_a_mark_of_byte_order_is_no_part_of_a_shader(lab, plane, tmp_path):
+    """Some editors on Windows write one."""
+    text = (paths.glsl() / "ssao.frag").read_bytes()
+    (tmp_path / "marked.frag").write_bytes(b"\xef\xbb\xbf" + text)
+    frame = lab.render(plane, f"{tmp_path}/marked.frag:ssao")
+    np.testing.assert_array_equal(frame["visibility"], lab.render(plane, "ssao")["visibility"])
+
+
+def test_a_folder_is_no_shader(tmp_path):
+    (tmp_path / "folder.frag").mkdir()
+    with pytest.raises(FileError, match=r"folder\.frag is no file; name the shader"):
+        find(f"{tmp_path}/folder.frag:ssao", MODULES)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import small_scenes
 
+import aolab
 from aolab import DirectionalLight, Environment, Instance, Mesh, Notice, Scene, SceneError, Texture
 from aolab.modules.base import auto_radius
 
@@ -105,3 +106,31 @@ def test_one_vertex_of_a_box_far_out_does_not_decide_what_is_framed(away):
 def test_a_model_on_a_wide_floor_is_framed_with_its_floor():
     scene = Scene((Instance(small_scenes.sphere(1.0, (0, 1, 0))), Instance(small_scenes.floor(15.0))))
     assert np.linalg.norm(scene.camera.eye) > 30
+
+
+TRIANGLE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: aolab.PointLight(5), "PointLight: position = 5 is not three finite numbers"),
+        (lambda: aolab.PointLight((0, 1)), r"position = \(0, 1\) is not three"),
+        (lambda: aolab.PointLight((0, 1, 0), "red"), "intensity = 'red' is not three"),
+        (lambda: aolab.PointLight((0, 1, float("nan"))), "position = .* is not three finite"),
+        (lambda: aolab.DirectionalLight("x"), "direction = 'x' is not three"),
+        (lambda: aolab.SpotLight((0, 1, 0), 5), "direction = 5 is not three"),
+        (lambda: aolab.SpotLight((0, 1, 0), (0, -1, 0), inner="x"), "inner = x, outer = 30.0 are not"),
+        (lambda: aolab.Material("red"), "base_color = red is not three numbers"),
+        (lambda: aolab.Material(alpha="x"), "alpha = 'x' is not a number"),
+        (lambda: aolab.Mesh("a", "b"), "vertices = 'a' are not numbers"),
+        (lambda: aolab.Mesh(*TRIANGLE, material=5), "material = 5 is not a Material"),
+        (lambda: aolab.Camera((0, 0, 1), "x"), "target = x is not three"),
+        (lambda: aolab.Camera((0, 0, 1), (0, 0, 0), fov="x"), "fov = 'x' is not a number"),
+        (lambda: aolab.Camera((0, 0, 1), (0, 0, 0), ortho=(1, 2)), r"ortho = \(1, 2\) is not a number"),
+        (lambda: aolab.load("boxes").replace(camera=5), "camera = 5 is not a Camera"),
+    ],
+)
+def test_wrong_types_are_named(make, words):
+    with pytest.raises(SceneError, match=words):
+        make()
