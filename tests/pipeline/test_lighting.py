@@ -303,7 +303,7 @@ def test_a_mirrored_instance_is_lit_and_shaded_like_its_mirror_image(lab):
 def test_lights_refuse_what_cannot_shine():
     for make, message in (
         (lambda: DirectionalLight((0, 0, 0)), r"DirectionalLight: direction = \(0, 0, 0\) has no length"),
-        (lambda: PointLight((0, np.nan, 0)), r"PointLight: position = .* is not finite"),
+        (lambda: PointLight((0, np.nan, 0)), r"PointLight: position = .* is not three finite numbers"),
         (lambda: PointLight((0, 1, 0), (1, -1, 1)), r"PointLight: intensity = .* is negative"),
         (lambda: SpotLight((0, 1, 0), (0, -1, 0), inner=40, outer=30), r"inner = 40, outer = 30 are not 0 <= inner"),
     ):
