@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from time import perf_counter
 
+from ..cores import cores
 from ..errors import Error, FileError, ParameterError
 from .check import MARK, exercise_of
 from .exercise import Exercise
@@ -155,9 +156,8 @@ def grade(
             done(graded)
         return graded
 
-    count = workers or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     processes = Processes()
-    with ThreadPoolExecutor(max(1, count)) as pool:
+    with ThreadPoolExecutor(max(1, workers or cores())) as pool:
         try:
             return list(pool.map(one, wanted))
         except BaseException:  # an interrupt

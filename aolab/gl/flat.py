@@ -9,9 +9,8 @@ from dataclasses import replace
 
 from .source import Source
 
-EXTENSION = (
-    "GL_ARB_separate_shader_objects"  # varyings are joined by location: a uniform keeps its name in both shaders
-)
+# joins varyings by location, so that a uniform keeps its name in both shaders
+EXTENSION = "GL_ARB_separate_shader_objects"
 
 _UNIFORM = re.compile(r"^\s*uniform\s+((?:float|int|i?vec[234]|mat[34])\s+\w+(?:\[\w+\])?)\s*;")
 _DECLARED = re.compile(r"(?P<type>\w+)\s+(?P<name>\w+)(?:\[(?P<length>\w+)\])?")

@@ -59,6 +59,15 @@ class Where:
             framebuffer.depth_mask = True
             gl.enable_only(moderngl.NOTHING)
 
+    def draw(self, framebuffer: moderngl.Framebuffer, vertices: moderngl.VertexArray, band: Region) -> None:
+        """Draw the pixels that are in `band`."""
+        _fullscreen(framebuffer, vertices, band)
+
+
+def _fullscreen(framebuffer: moderngl.Framebuffer, vertices: moderngl.VertexArray, band: Region) -> None:
+    framebuffer.viewport = band
+    vertices.render(moderngl.TRIANGLES, 3)
+
 
 class PassRunner:
     """Runs the passes of one frame: programs, the pool of textures, the frame's own textures, and its timer."""
@@ -143,11 +152,7 @@ class PassRunner:
                     self.pool.fill(outputs[name], step.outputs[name], value)
             framebuffer.use()
             for band in bands(program, whole) if self.timer.software else (whole,):
-                if isinstance(where, Tiles):
-                    where.draw(framebuffer, self._vertices(program), band)
-                else:
-                    framebuffer.viewport = band
-                    self._vertices(program).render(moderngl.TRIANGLES, 3)
+                (where.draw if where else _fullscreen)(framebuffer, self._vertices(program), band)
         return outputs
 
     def program(self, step: Pass, given: Joined, vertex: str = FULLSCREEN, geometry: str = "") -> Program:

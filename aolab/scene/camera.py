@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from ..errors import SceneError
-from ..maths.numbers import numbers
+from ..maths.numbers import numbers, vector
 from ..maths.transforms import look_along, orthographic, perspective
 
 Vec3 = tuple[float, float, float]
@@ -34,8 +34,8 @@ class Camera:
 
     def __post_init__(self) -> None:
         for name in ("eye", "target", "up"):
-            value = numbers(getattr(self, name))
-            if value is None or value.shape != (3,) or not np.isfinite(value).all():
+            value = vector(getattr(self, name))
+            if value is None:
                 raise SceneError(f"camera: {name} = {getattr(self, name)} is not three finite numbers")
             object.__setattr__(self, name, tuple(value.tolist()))
         for name in ("fov", "ortho", "near", "far"):

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import SceneError
-from ..maths.numbers import numbers
+from ..maths.numbers import numbers, vector
 from .camera import Vec3
 
 
 def _check(light: object, **values: object) -> None:
     for name, value in values.items():
-        array = numbers(value)
-        if array is None or array.shape != (3,) or not np.isfinite(array).all():
+        array = vector(value)
+        if array is None:
             raise SceneError(f"{type(light).__name__}: {name} = {value!r:.80} is not three finite numbers")
         if name in ("intensity", "irradiance") and (array < 0).any():
             raise SceneError(f"{type(light).__name__}: {name} = {value} is negative")

@@ -11,7 +11,7 @@ from ..errors import Notice, SceneError
 from ..maths.connected import connected
 from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
-from ..maths.numbers import numbers
+from ..maths.numbers import numbers, vector
 from ..maths.tangents import mikktspace
 
 Wrap = Literal["repeat", "mirror", "clamp"]
@@ -99,17 +99,11 @@ class Material:
 
     def __post_init__(self) -> None:
         what = f"material '{self.name}'"
-        color = numbers(self.base_color)
-        if (
-            color is None
-            or color.shape != (3,)
-            or not np.isfinite(color).all()
-            or (color < 0).any()
-            or (color > 1).any()
-        ):
+        color = vector(self.base_color)
+        if color is None or (color < 0).any() or (color > 1).any():
             raise SceneError(f"{what}: base_color = {self.base_color} is not three numbers in [0, 1]")
-        emission = numbers(self.emission)
-        if emission is None or emission.shape != (3,) or not np.isfinite(emission).all() or (emission < 0).any():
+        emission = vector(self.emission)
+        if emission is None or (emission < 0).any():
             raise SceneError(f"{what}: emission = {self.emission} is not three finite numbers from 0")
         for name in ("alpha", "normal_scale"):
             if numbers(getattr(self, name)) is None:

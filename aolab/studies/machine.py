@@ -1,14 +1,15 @@
 """A description of the machine, which belongs to every figure of time."""
 
-import os
 import platform
 from pathlib import Path
+
+from ..cores import cores
 
 
 def describe() -> str:
     """Processor, cores that this process may use, and system: 'AMD EPYC 7R13, 2 cores, Linux'."""
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return f"{_processor()}, {cores} core{'s' if cores > 1 else ''}, {platform.system()}"
+    count = cores()
+    return f"{_processor()}, {count} core{'s' if count > 1 else ''}, {platform.system()}"
 
 
 def _processor() -> str:

@@ -1,6 +1,5 @@
 """The reference's work: points in chunks, on all cores."""
 
-import os
 import threading
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -8,6 +7,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
+from ..cores import cores
 from ..progress import progress_bar
 from .adaptive import batches_needed
 from .buffers import BUFFERS, standard_error
@@ -67,7 +67,7 @@ def _run(work: Callable[[int], int], total: int, progress: bool | None, what: st
 
     Stops at the first error or Ctrl-C: `stop` is set, and the work that is under way ends after its next rays.
     """
-    with _bar(total, progress, what) as advance, ThreadPoolExecutor(_cores()) as pool:
+    with _bar(total, progress, what) as advance, ThreadPoolExecutor(cores()) as pool:
         jobs: list[Future[int]] = [pool.submit(work, start) for start in range(0, total, CHUNK)]
         try:
             for job in jobs:
@@ -76,11 +76,6 @@ def _run(work: Callable[[int], int], total: int, progress: bool | None, what: st
             stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-
-
-def _cores() -> int:
-    """The cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @contextmanager

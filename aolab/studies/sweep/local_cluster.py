@@ -2,7 +2,6 @@
 
 import logging
 import multiprocessing
-import os
 import signal
 import time
 from collections.abc import Iterator
@@ -10,6 +9,7 @@ from contextlib import contextmanager, suppress
 from multiprocessing import resource_tracker
 from typing import TYPE_CHECKING
 
+from ...cores import cores
 from ...errors import Error
 
 if TYPE_CHECKING:
@@ -31,8 +31,7 @@ def local_cluster(workers: int) -> Iterator["LocalCluster"]:
     from dask import config
     from distributed import LocalCluster
 
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    threads = {"LP_NUM_THREADS": str(max(1, cores // workers))}
+    threads = {"LP_NUM_THREADS": str(max(1, cores() // workers))}
     runner = _deaf_loop()
     # without workers at first: their start takes seconds, in which an interrupt would leave no cluster to be closed
     cluster = {"n_workers": 0, "threads_per_worker": 1, "env": threads, "dashboard_address": ":0"}
