@@ -8,7 +8,7 @@ from aolab.truth import tracing
 
 
 def test_the_work_under_way_ends(monkeypatch):
-    monkeypatch.setattr(tracing, "_cores", lambda: 2)
+    monkeypatch.setattr(tracing, "cores", lambda: 2)
     stop, ended = threading.Event(), []
 
     def work(start: int) -> int:
