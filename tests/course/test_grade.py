@@ -62,7 +62,7 @@ def test_a_right_folder_has_all_points_whatever_the_others_do(graded):
 
 @pytest.mark.slow
 def test_an_endless_loop_is_ended_at_the_time_limit(folders, graded):
-    """llvmpipe leaves a loop after 65,535 steps, and computes on; with another driver, the time limit ends the process."""
+    """llvmpipe leaves a loop after 65,535 steps, and computes on; on other drivers, the time limit ends the process."""
     assert graded["endless"].result.score < course.exercise("hemisphere").points
     (ended,) = course.grade([folders["endless"]], limit=1)  # less than the package takes to start and draw
     assert ended.result.score == 0
