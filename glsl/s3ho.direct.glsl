@@ -12,7 +12,6 @@ const bool shared_light;     // multiply by `light_share`
 
 uniform sampler2D light_share;
 uniform float light_window;  // bands
-uniform mat4 view_from_world;
 
 vec3 directAt(Surface surface) {
     if (lights == 0) return vec3(0.0);
@@ -23,7 +22,7 @@ vec3 directAt(Surface surface) {
     for (int i = 0; i < lights; ++i) {
         float arriving;
         vec3 toLight = towardsLightAt(i, worldPos, arriving);
-        vec3 viewToLight = mat3(view_from_world) * toLight;
+        vec3 viewToLight = toLight * mat3(world_from_view);  // by the inverse, which is the transpose
         arriving *= lobesShadowOf(i, worldPos, toLight, dot(normal, viewToLight));
         irradiance += light_color[i] * arriving * max(shDot(shBasis(viewToLight), windowed), 0.0);
     }

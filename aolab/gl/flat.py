@@ -5,57 +5,78 @@ same for all pixels of a triangle, and is read once. The vertex shader hands the
 """
 
 import re
-from dataclasses import replace
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
 
 from .source import Source
 
 # joins varyings by location, so that a uniform keeps its name in both shaders
 EXTENSION = "GL_ARB_separate_shader_objects"
 
-_UNIFORM = re.compile(r"^\s*uniform\s+((?:float|int|i?vec[234]|mat[34])\s+\w+(?:\[\w+\])?)\s*;")
-_DECLARED = re.compile(r"(?P<type>\w+)\s+(?P<name>\w+)(?:\[(?P<length>\w+)\])?")
+_UNIFORM = re.compile(r"^\s*uniform\s+((float|int|i?vec[234]|mat[34])\s+(\w+)(?:\[(\w+)\])?)\s*;")
 _CONSTANT = re.compile(r"^\s*const\s+int\s+(\w+)\s*=\s*(\d+)\s*;")
 
 
-def flattened(vertex: Source, fragment: Source, room: int) -> tuple[Source, Source]:
+@dataclass(frozen=True)
+class _Uniform:
+    """The uniform's declaration as it is written, its parts, and the vectors that it takes as a varying."""
+
+    text: str
+    type: str
+    length: str  # of an array, a number; or ""
+    vectors: int
+
+
+def flattened(
+    vertex: Source, fragment: Source, room: int, read: Callable[[], Collection[str]]
+) -> tuple[Source, Source]:
     """Both shaders, with up to `room` vectors of uniforms as varyings. `vertex` has no varyings of its own.
 
-    A declaration stays as it is if it has a value, lists several names, or has another type than these: float, int,
+    If there are more, only the uniforms that the shader reads take room; `read` returns the names of these. A
+    declaration stays as it is if it has a value, lists several names, or has another type than these: float, int,
     vec2 to vec4, ivec2 to ivec4, mat3, mat4, and their arrays.
     """
-    constants: dict[str, int] = {}
-    moved: dict[str, str] = {}
-    handed, lines, location = [], [], 0
+    uniforms = _declared(fragment)
+    if sum(uniform.vectors for uniform in uniforms.values()) > room:
+        names = read()
+        uniforms = {name: uniform for name, uniform in uniforms.items() if name in names}
+    locations, used = dict[str, int](), 0
+    for name, uniform in uniforms.items():
+        if used + uniform.vectors <= room:
+            locations[name] = used
+            used += uniform.vectors
+    lines, seen = [], set[str]()
+    for line in fragment.text.splitlines():
+        match = _UNIFORM.match(line)
+        if match and match[3] in locations and match[1] == uniforms[match[3]].text:
+            varying = f"layout(location = {locations[match[3]]}) flat in {match[1]};"
+            line = line.replace(match[0], "" if match[3] in seen else varying, 1)
+            seen.add(match[3])
+        lines.append(line)
+    moved = [(name, location, uniforms[name]) for name, location in locations.items()]
+    return _with_outs(vertex, moved), _with_extension(replace(fragment, text="\n".join(lines) + "\n"))
+
+
+def _declared(fragment: Source) -> dict[str, _Uniform]:
+    """{name: uniform} of those that may become varyings, as they are declared first."""
+    constants, found = dict[str, str](), dict[str, _Uniform]()
     for line in fragment.text.splitlines():
         if match := _CONSTANT.match(line):
-            constants[match[1]] = int(match[2])
-        match = _UNIFORM.match(line)
-        parts = _DECLARED.fullmatch(match[1]) if match else None
-        vectors = _vectors(parts, constants) if parts else 0
-        if match and parts and parts["name"] in moved:
-            line = line.replace(match[0], "", 1) if moved[parts["name"]] == match[1] else line
-        elif match and parts and 0 < vectors <= room - location:
-            moved[parts["name"]] = match[1]
-            line = line.replace(match[0], f"layout(location = {location}) flat in {match[1]};", 1)
-            handed.append((location, parts, constants.get(parts["length"] or "", parts["length"])))
-            location += vectors
-        lines.append(line)
-    return _with_outs(vertex, handed), _with_extension(replace(fragment, text="\n".join(lines) + "\n"))
+            constants[match[1]] = match[2]
+        if match := _UNIFORM.match(line):
+            text, kind, name, length = match.groups(default="")
+            length = constants.get(length, length)
+            if not length or length.isdecimal():
+                columns = int(kind[-1]) if kind.startswith("mat") else 1
+                found.setdefault(name, _Uniform(text, kind, length, columns * int(length or 1)))
+    return found
 
 
-def _vectors(declared: re.Match[str], constants: dict[str, int]) -> int:
-    """The locations that a varying takes; 0 for an array of unknown length."""
-    length = declared["length"] or "1"
-    count = int(length) if length.isdecimal() else constants.get(length, 0)
-    return count * (int(declared["type"][-1]) if declared["type"].startswith("mat") else 1)
-
-
-def _with_outs(vertex: Source, handed: list[tuple[int, re.Match[str], int | str | None]]) -> Source:
+def _with_outs(vertex: Source, moved: list[tuple[str, int, _Uniform]]) -> Source:
     """The vertex shader, which copies each uniform into the varying at its location."""
     outs, copies = "", ""
-    for location, declared, length in handed:
-        of = f"[{length}]" if length else ""
-        kind, name = declared["type"], declared["name"]
+    for name, location, uniform in moved:
+        kind, of = uniform.type, f"[{uniform.length}]" if uniform.length else ""
         outs += f"uniform {kind} {name}{of}; layout(location = {location}) flat out {kind} flat_{name}{of}; "
         copies += f" flat_{name} = {name};"
     text = vertex.text.replace("void main() {", f"{outs}void main() {{{copies}", 1)

@@ -6,6 +6,7 @@ import struct
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from types import MappingProxyType
 
@@ -228,7 +229,8 @@ def _compile(request: Request) -> Program:
     linked = None
     if request.vertex == FULLSCREEN and (room := _flat_vectors()):
         with suppress(moderngl.Error):  # then the report is about the shader as it is written
-            linked = _linked(*flattened(vertex, fragment, room), None, locations)
+            read = partial(_uniforms, vertex, fragment, locations)
+            linked = _linked(*flattened(vertex, fragment, room, read), None, locations)
     try:
         linked = linked or _linked(vertex, fragment, geometry, locations)
     except moderngl.Error as error:
@@ -246,6 +248,12 @@ def _linked(vertex: Source, fragment: Source, geometry: Source | None, locations
             fragment_shader=fragment.text,
             fragment_outputs=locations,
         )
+
+
+def _uniforms(vertex: Source, fragment: Source, locations: dict[str, int]) -> set[str]:
+    """The names of the uniforms that the shaders read; an array by its bare name."""
+    linked = _linked(vertex, fragment, None, locations)
+    return {name.partition("[")[0] for name in linked if isinstance(linked[name], moderngl.Uniform)}
 
 
 def _flat_vectors() -> int:

@@ -12,8 +12,8 @@ from aolab.gl.source import assemble
 ROOM = 30
 
 
-def texts(fragment: str, room: int = ROOM) -> tuple[str, str]:
-    made = flattened(assemble("pipeline/fullscreen.vert"), assemble(fragment), room)
+def texts(fragment: str, room: int = ROOM, read: str = "abc") -> tuple[str, str]:
+    made = flattened(assemble("pipeline/fullscreen.vert"), assemble(fragment), room, lambda: read)
     return made[0].text, made[1].text
 
 
@@ -45,6 +45,40 @@ def test_uniforms_beyond_the_room_stay():
     assert "location = 4) flat in vec4 c;" in fragment
 
 
+def test_uniforms_that_are_not_read_take_no_room():
+    _, fragment = texts("uniform mat4 a;\nuniform mat4 b;\nuniform vec4 c;\n", room=5, read="bc")
+    assert "uniform mat4 a;" in fragment
+    assert "location = 0) flat in mat4 b;" in fragment
+    assert "location = 4) flat in vec4 c;" in fragment
+
+
+def test_the_driver_finds_the_uniforms_that_are_read(boxes, monkeypatch):
+    """Of more uniforms than there is room for."""
+    if not context.is_software():
+        pytest.skip("on hardware, uniforms stay uniforms")
+
+    class Many(aolab.Module):
+        shader = """
+        uniform mat4 view_from_world;
+        uniform vec4 view_region;
+        out float visibility;
+        void main() { visibility = view_region.z; }
+        """
+
+    found = []
+
+    def noted(vertex, fragment, room, read):
+        if "view_region.z" in fragment.text:
+            found.append((read(), flattened(vertex, fragment, 3, read)[1].text))
+        return flattened(vertex, fragment, room, read)
+
+    monkeypatch.setattr(program, "flattened", noted)
+    aolab.Lab().render(boxes, Many(), size=(8, 8))
+    names, text = found[0]
+    assert names == {"view_region"}
+    assert "flat in vec4 view_region;" in text
+
+
 def test_a_second_declaration_of_a_uniform_is_dropped():
     _, fragment = texts("uniform vec2 a;\nuniform vec2 a;\n")
     assert fragment.count("vec2 a;") == 1
@@ -52,7 +86,7 @@ def test_a_second_declaration_of_a_uniform_is_dropped():
 
 def test_lines_keep_their_places():
     source = assemble("float x;\nuniform float a;\nfloat y;\n")
-    _, fragment = flattened(assemble("pipeline/fullscreen.vert"), source, ROOM)
+    _, fragment = flattened(assemble("pipeline/fullscreen.vert"), source, ROOM, set)
     places = dict(zip(fragment.text.splitlines(), fragment.lines, strict=True))
     assert places["float y;"] == ("<inline>", 3)
 
