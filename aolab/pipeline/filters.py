@@ -4,6 +4,8 @@ A pass treats up to four buffers alike, and reads the geometry once for all of t
 """
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from math import ceil
 from types import MappingProxyType
 
 import moderngl
@@ -20,6 +22,9 @@ from .tiles import PIXELS, Tiles, grid
 
 Formats = Mapping[str, str]
 
+# in pixels of the small picture: the four nearest (upsample.frag)
+UPSAMPLING_REACH = 1
+
 
 def apply(
     runner: PassRunner,
@@ -33,43 +38,66 @@ def apply(
 ) -> Buffers:
     """Each buffer of the estimate, filtered and at full size; `small` and `large` are surfaces with their view.
 
-    On a software renderer, buffers with values in `background` are filtered where the buffer `decides` has another
-    value within the filter's reach. Elsewhere they all have these values, so that their means are known.
+    On a software renderer, buffers with values in `background` are filtered, and brought to full size, where the buffer
+    `decides` has another value within reach. Elsewhere they all have these values, so that their means are known.
     """
-    result: Buffers = {}
     upsampled = small[1].size != large[1].size
-    tiles = None
-    if decides in background and runner.timer.software and not (upsampled and filter.at_full_size):
-        tiles = _differing(runner, filter, decides, estimate, formats, background[decides])
+    reach = filter.reach() if decides in background and runner.timer.software else None
+    filtered = grown = None
+    if reach is not None and not (upsampled and filter.at_full_size):
+        filtered = _differing(runner, estimate, formats, decides, background[decides], (small[1], small[1]), reach)
+    if reach is not None and upsampled and filter.upsampling == Filter.upsampling:
+        reach = UPSAMPLING_REACH + (0 if filter.at_full_size else reach)
+        grown = _differing(runner, estimate, formats, decides, background[decides], (small[1], large[1]), reach)
+    result: Buffers = {}
     for names in _groups(estimate):
         some, textures = {name: formats[name] for name in names}, {name: estimate[name] for name in names}
-        there = tiles if background.keys() >= some.keys() else None
-        if filter.at_full_size:
-            if upsampled:
-                textures = _upsample(runner, filter, textures, some, small, large)
-            result |= _passes(runner, filter, textures, some, large, there)
-        else:
-            textures = _passes(runner, filter, textures, some, small, there)
-            result |= _upsample(runner, filter, textures, some, small, large) if upsampled else textures
-    if tiles:
-        runner.give_back({"tiles": tiles.texture})
+        even = {name: background[name] for name in names if name in background}
+        where, where_grown = (filtered, grown) if even.keys() == some.keys() else (None, None)
+        if upsampled and filter.at_full_size:
+            textures = _upsample(runner, filter, textures, some, small, large, where_grown, even)
+        textures = _passes(runner, filter, textures, some, large if filter.at_full_size else small, where)
+        if upsampled and not filter.at_full_size:
+            textures = _upsample(runner, filter, textures, some, small, large, where_grown, even)
+        result |= textures
+    for tiles in (filtered, grown):
+        if tiles:
+            runner.give_back({"tiles": tiles.texture})
     return result
 
 
 def _differing(
-    runner: PassRunner, filter: Filter, decides: str, estimate: Buffers, formats: Formats, value: float
-) -> Tiles | None:
-    """The tiles with a value other than `value` in the buffer `decides`, within the filter's reach; None without it."""
-    reach = filter.reach()
-    if reach is None:
-        return None
-    texture = estimate[decides]
+    runner: PassRunner,
+    estimate: Buffers,
+    formats: Formats,
+    decides: str,
+    value: float,
+    views: tuple[View, View],
+    reach: int,
+) -> Tiles:
+    """The tiles with a value other than `value` in the buffer `decides`, at most `reach` of its pixels from the tile.
+
+    `views`: the view of the buffer, and the view whose picture is drawn in tiles.
+    """
     name = titled("filter", next(names for names in _groups(estimate) if decides in names))  # its time is the filter's
-    constants = {"tile_pixels": PIXELS, "reach": reach, "single": FORMATS[formats[decides]][0] == 1}
+    (scale_x, scale_y, left, bottom), (to_x, to_y, to_left, to_bottom) = (
+        ray_scale_offset(view.camera, view.size) for view in reversed(views)
+    )
+    ratio = scale_y / to_y
+    constants = {
+        "tile_pixels": PIXELS,
+        "across": ceil(PIXELS * ratio) + (ratio < 1),  # a tile may begin within a pixel
+        "reach": reach,
+        "single": FORMATS[formats[decides]][0] == 1,
+    }
+    texture = estimate[decides]
+    numbers = {
+        "value": value,
+        "source_texel_size": (1 / texture.width, 1 / texture.height),
+        "source_from_pixel": (scale_x / to_x, ratio, (left - to_left) / to_x, (bottom - to_bottom) / to_y),
+    }
     step = Pass(name, "pipeline/tiles.frag", {"tiles": "R8"}, constants)
-    texel_size = 1 / texture.width, 1 / texture.height
-    given = Bindings("the buffer", {"source": texture}, {"value": value, "source_texel_size": texel_size})
-    return Tiles(runner.run(step, [given], grid(texture.size))["tiles"])
+    return Tiles(runner.run(step, [Bindings("the buffer", {"source": texture}, numbers)], grid(views[1].size))["tiles"])
 
 
 def _passes(
@@ -98,16 +126,18 @@ def _upsample(
     formats: Formats,
     small: tuple[Buffers, View],
     large: tuple[Buffers, View],
+    tiles: Tiles | None,
+    background: Mapping[str, float],
 ) -> Buffers:
-    """The buffers at the size of `large`."""
+    """The buffers at the size of `large`, drawn over `tiles`; elsewhere they have the values of their `background`."""
     surfaces, view = small
     there = Bindings(
         "the small view",
         {"smallViewZ": surfaces["viewZ"], "smallNormal": surfaces["viewNormal"]},
         {"small_ray_from_pixel": ray_scale_offset(view.camera, view.size)},
     )
-    step = over_sources("upsample", filter.upsampling, formats)
-    return runner.run(step, [*_common(filter, *large), there, _sources(textures)], large[1].size)
+    step = replace(over_sources("upsample", filter.upsampling, formats), background=background)
+    return runner.run(step, [*_common(filter, *large), there, _sources(textures)], large[1].size, where=tiles)
 
 
 def _common(filter: Filter, surfaces: Buffers, view: View) -> list[Bindings]:

@@ -115,3 +115,13 @@ def test_a_filter_changes_nothing_beyond_its_reach(lab, wall, filter):
     tiled = lab.render(wall, Spots(filter=filter), size=SIZE)
     for name in Spots.outputs:
         np.testing.assert_array_equal(tiled.channels(name), frame.channels(name), err_msg=name)
+
+
+@pytest.mark.parametrize("filter", ["box4", "wendland"])
+@pytest.mark.parametrize("scale", [0.37, 0.5, 0.95])
+def test_tiles_change_no_upsampled_result(lab, wall, filter, scale):
+    frame = lab.render(wall, Undecided(filter=filter, scale=scale), size=SIZE)
+    tiled = lab.render(wall, Spots(filter=filter, scale=scale), size=SIZE)
+    for name in Spots.outputs:
+        np.testing.assert_array_equal(tiled.channels(name), frame.channels(name), err_msg=name)
+    assert 0 < frame.channels("other").any(axis=-1).mean() < 0.5
