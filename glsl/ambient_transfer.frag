@@ -30,7 +30,6 @@ void main() {
 
     vec3 reflecting = vec3(0.0);
     float open = 0.0;
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         float share = interleavedOffset(kernel[i].w, receiver.set);
         vec3 way = wayAlong(receiver, receiver.frame * kernel[i].xyz * (radius * measureInverse(share)));

@@ -19,7 +19,6 @@ void main() {
     if (!receiverHere(receiver)) return;
 
     Moments moments = NO_MOMENTS;
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         vec3 viewDir = normalize(receiver.frame * kernel[i].xyz);
         float blocked = blockedShare(receiver, i);

@@ -18,7 +18,6 @@ void main() {
     if (!receiverHere(receiver)) return;
 
     float blockedDirections = 0.0;
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         blockedDirections += isWayBlocked(receiver, i) ? 1.0 : 0.0;
     }

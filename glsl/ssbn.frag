@@ -23,7 +23,6 @@ void main() {
 
     vec4 blocked = vec4(0.0);
     float weights = 0.0;
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         vec4 direction = vec4(normalize(kernel[i].xyz), 1.0);  // the length of a kernel's vector is its reach
         if (uniform_weights) direction *= 0.5 / direction.z;

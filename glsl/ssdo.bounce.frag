@@ -17,7 +17,6 @@ void main() {
     if (!receiverHere(receiver)) return;
 
     vec3 sum = vec3(0.0);
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         Occluder first;
         if (firstBlocked(receiver, i, first) != OPEN) {

@@ -26,7 +26,6 @@ void main() {
 
     mat3 worldFrame = mat3(world_from_view) * receiver.frame;
     vec4 open = vec4(0.0), all = vec4(0.0);
-    #pragma unroll
     for (int i = 0; i < directions; ++i) {
         vec4 light = vec4(texture(prefiltered_environment, octahedralUv(worldFrame * kernel[i].xyz)).rgb, 1.0);
         open += isWayBlocked(receiver, i) ? vec4(0.0) : light;

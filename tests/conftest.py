@@ -27,8 +27,6 @@ from aolab.pipeline.pass_runner import PassRunner
 
 os.environ.setdefault("PYGLET_HEADLESS", "1")  # pyrender imports pyglet, which otherwise needs X11
 os.environ.setdefault("LP_NUM_THREADS", "1")  # threads of llvmpipe in each worker: the workers use the cores already
-# most tests draw little and compile much; tests/gl/test_unroll.py compares unrolled shaders with these plain ones
-os.environ.setdefault("AOLAB_UNROLL", "0")
 
 CHECKOUT = Path(__file__).parents[1]
 PAPERS = CHECKOUT / "tests" / "papers"

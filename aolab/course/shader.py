@@ -109,8 +109,7 @@ def assembled(shader: str, folder: Path, inline: Iterable[str]) -> str:
     """The text of a shader, with the files of `inline` in place of their includes.
 
     The files are looked up in `folder`, then under glsl/. An include of `STANDS_FOR` may be named by its file. Raises
-    `ParameterError` for a file that is missing, or that no text includes. Lines `#pragma unroll` are left out: unrolled
-    loops are faster to draw, but a check compiles much and draws little.
+    `ParameterError` for a file that is missing, or that no text includes.
     """
     wanted, used = set(inline), set[str]()
 
@@ -127,7 +126,7 @@ def assembled(shader: str, folder: Path, inline: Iterable[str]) -> str:
     text = _INCLUDE.sub(put, source(shader, folder))
     if left := wanted - used:
         raise ParameterError(f"no include of {shader} leads to '{min(left)}'")
-    return re.sub(r"[ \t]*#pragma unroll\n", "", text)
+    return text
 
 
 def with_own_includes(text: str, folder: Path) -> str:

@@ -10,7 +10,6 @@ from pathlib import Path
 from .. import paths
 from ..errors import ShaderError, suggestion
 from ..input import read_text
-from .unroll import unrolled
 
 VERSION = "#version 330 core"
 SUFFIXES = (".glsl", ".frag", ".vert")
@@ -54,8 +53,7 @@ def assemble(
     `shader` is a file under glsl/ ("ssao.frag"), the path of another file, or GLSL text (anything with a line break
     or a brace).
     An include of a file outside of glsl/ is looked up beside that file first, then under glsl/. A line
-    `const int directions;` is a hole that `constants["directions"]` fills. Loops under `#pragma unroll` are unrolled
-    (aolab/gl/unroll.py). `aliases` maps an include's name to the
+    `const int directions;` is a hole that `constants["directions"]` fills. `aliases` maps an include's name to the
     file, or to the GLSL text, that stands for it. Raises `ShaderError` for a missing file, a cycle (with its chain), a
     constant that is not given.
     """
@@ -66,9 +64,7 @@ def assemble(
         builder.add(file, str(shader), [])
     else:
         file = builder.include(shader, [], f"shader '{shader}'")
-    made = unrolled(list(zip(builder.text, builder.lines, strict=True)))
-    text, lines = "\n".join(line for line, _ in made) + "\n", [place for _, place in made]
-    return Source(file, text, lines, builder.files, builder.used)
+    return Source(file, "\n".join(builder.text) + "\n", builder.lines, builder.files, builder.used)
 
 
 def is_text(shader: str | Path) -> bool:

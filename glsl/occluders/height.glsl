@@ -4,8 +4,6 @@
 //
 // Reads: uv, reliefU, reliefV of the receiver; for the occluder's light, the pixel of its place on the polygon.
 
-#pragma unroll off  // copies of the test took minutes to compile, not half a second (ambient_transfer, 16 × 4)
-
 #include "occluders/surfaces.glsl"
 #include "lib/relief.glsl"
 

@@ -1,8 +1,6 @@
 // Occluders: two kinds together. A point is blocked if one of them blocks it, so that the visibility of a direction is the
 // product of theirs. The two kinds are included before this file, renamed (aolab/modules/occluders/product.py).
 
-#pragma unroll off  // as for voxels and height maps
-
 struct Occluder {
     vec3 viewPos;
     bool isFirst;

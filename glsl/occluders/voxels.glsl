@@ -6,8 +6,6 @@
 // ½ (|n·a| + |n·b| + |n·c|) away, for the voxel's edges a, b and c. These voxels, those below, and those next to the receiver do
 // not block it.
 
-#pragma unroll off  // copies of the test took a minute to compile (ssao, 16 × 8)
-
 #include "occluders/surfaces.glsl"
 #include "lib/voxel_grid.glsl"
 

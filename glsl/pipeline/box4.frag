@@ -36,7 +36,6 @@ void main() {
     // the rays of a row, or column, differ in one component: by this much a pixel
     vec2 rayStep = vertical ? vec2(facet.y, normal.y) * ray_from_pixel.y : vec2(facet.x, normal.x) * ray_from_pixel.x;
     float count = 1.0;
-    #pragma unroll
     for (int i = -1; i <= 2; ++i) {
         vec2 other = uv + float(i) * uvStep;
         float otherZ = texture(viewZ, other).r;   // beyond the edge, that of the background
