@@ -14,6 +14,8 @@ import lazy_loader
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 if "IPython" in sys.modules and (_ipython := sys.modules["IPython"].get_ipython()):
-    from .notebook.completion import install
+    from . import interrupts
+    from .notebook import completion
 
-    install(_ipython)
+    interrupts.install(_ipython)
+    completion.install(_ipython)
