@@ -1,7 +1,7 @@
 """Ctrl-C, and the stop button of a notebook, at places that cannot bear an exception.
 
-Some C code crashes on exceptions. Some libraries swallow every exception while they are imported, as trimesh does; others
-stay broken if their import ends midway, as numpy does.
+Some C code crashes on exceptions. Some libraries swallow every exception while they are imported, as trimesh does;
+others stay broken if their import ends midway, as numpy does.
 """
 
 import os

@@ -34,9 +34,9 @@ def candidates(before: str, variables: Mapping[str, Any] | None = None, begun: s
     """The names that may follow the text `before` the cursor, which ends within a call; `begun` is the word after it.
 
     In a string: scenes, modules, buffers or the values of a parameter, by the argument; after NAME?, the parameters
-    of the scene or module NAME, with this begun word. Elsewhere: `KEY=` for each parameter of the module that the call names, or
-    of all modules if it names none; for `load`, those of the scene. `variables` holds the frames whose buffers are
-    offered, and the modules whose parameters are.
+    of the scene or module NAME, with this begun word. Elsewhere: `KEY=` for each parameter of the module that the
+    call names, or of all modules if it names none; for `load`, those of the scene. `variables` holds the frames whose
+    buffers are offered, and the modules whose parameters are.
     """
     found = CALL.search(before)
     if found is None:
@@ -101,7 +101,9 @@ def _with_parameters(begun: str, names: list[str]) -> list[str]:
     name, _, rest = begun.partition("?")
     if name.partition("+")[0] not in names:
         return []
-    head, key, equals = re.fullmatch(r"(.*&)?(\w*)(=?).*", rest).groups("")  # pyright: ignore[reportOptionalMemberAccess]
+    *former, last = rest.split("&")
+    key, equals, _ = last.partition("=")
+    head = "".join(f"{one}&" for one in former)
     if equals:
         return [f"{name}?{head}{key}={word}" for word in _words(key)] if name not in _scenes() else []
     return [f"{name}?{head}{key}=" for key in _stated(name) if not re.search(rf"\b{key}=", head)]
