@@ -11,9 +11,23 @@ import sys
 
 import lazy_loader
 
-__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+_imported, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
+
+
+def __getattr__(name: str) -> object:
+    try:
+        return _imported(name)
+    except AttributeError:
+        if name in __all__ or name.startswith("_"):
+            raise
+        from .errors import suggestion
+
+        raise AttributeError(f"aolab has no '{name}'{suggestion(name, __all__)}", name=name) from None
+
 
 if "IPython" in sys.modules and (_ipython := sys.modules["IPython"].get_ipython()):
-    from .notebook.completion import install
+    from . import interrupts
+    from .notebook import completion
 
-    install(_ipython)
+    interrupts.install(_ipython)
+    completion.install(_ipython)

@@ -4,6 +4,7 @@ import os
 import re
 import stat
 from os import PathLike
+from pathlib import Path
 
 from .errors import FileError, ParameterError
 
@@ -40,6 +41,13 @@ class Budget:
                 f"the environment variable AOLAB_MEMORY raises the limit (AOLAB_MEMORY={_enough(self.taken + size)})"
             )
         self.taken += size
+
+
+def as_path(path: object, what: str = "path") -> Path:
+    """`path` as a `Path`. Raises `ParameterError` for anything but a text or a path; errors call it `what`."""
+    if isinstance(path, (str, os.PathLike)):
+        return Path(path)
+    raise ParameterError(f"{what} = {path!r:.80} is not a path: give a text or a pathlib.Path")
 
 
 def read_file(path: str | PathLike[str], what: str, budget: Budget) -> bytes:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import IO
 
 from .errors import FileError
+from .input import as_path
 
 try:
     import fcntl
@@ -30,9 +31,9 @@ _swept: set[Path] = set()
 def check_writable(path: str | PathLike[str]) -> Path:
     """`path` as a `Path`, if a file can be written there; to be called before long work.
 
-    Raises `FileError` that names the obstacle.
+    Raises `FileError` that names the obstacle, and `ParameterError` for anything but a path.
     """
-    target = Path(path)
+    target = as_path(path)
     folder = target.parent
     if len(os.fsencode(target.name)) > LONGEST:
         raise FileError(f"cannot write {target.name[:40]}...: the name has more than {LONGEST} bytes")

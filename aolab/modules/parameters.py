@@ -14,6 +14,15 @@ from ..gl.source import Constant
 from ..pictures import html
 
 AUTO = "auto"
+# words for one meaning, in papers, engines and here: an error suggests the word that the module has
+SYNONYMS = (
+    ("bounces", "indirect", "bounce", "gi"),
+    ("directions", "samples", "rays", "taps"),
+    ("power", "strength", "intensity", "contrast"),
+    ("filter", "blur", "denoise"),
+    ("scale", "half", "half_resolution", "downsample"),
+    ("radius", "distance", "range", "max_distance"),
+)
 
 
 def parameter(
@@ -59,7 +68,13 @@ class Parameters(BaseModel, metaclass=_Declared):
 
     model_config = ConfigDict(frozen=True, extra="forbid", validate_default=True, allow_inf_nan=False)
 
-    if not TYPE_CHECKING:  # type checkers see the fields as arguments
+    if not TYPE_CHECKING:  # type checkers see the fields as arguments, which do not change
+
+        def __setattr__(self, name: str, value: object) -> None:
+            if name in type(self).stated():
+                what = label(type(self))
+                raise ParameterError(f"{what}: {name} cannot be changed; write module.replace({name}={value!r:.80})")
+            super().__setattr__(name, value)
 
         def __init__(self, **values: object) -> None:
             values = self.prepared(values)
@@ -190,7 +205,9 @@ def words(parameters: type[Parameters], name: str) -> list[str]:
 
 def unknown(parameters: type[Parameters], name: str) -> str:
     """The error message for a name that is no parameter."""
-    return f"{label(parameters)} has no parameter '{name}'{suggestion(name, parameters.stated())}"
+    known = parameters.stated()
+    meant = [word for words in SYNONYMS if name in words for word in words if word in known]
+    return f"{label(parameters)} has no parameter '{name}'{suggestion((*meant, name)[0], known)}"
 
 
 def describe(parameters: type[Parameters], name: str) -> dict[str, str]:

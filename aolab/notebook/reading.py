@@ -10,7 +10,7 @@ from ..gl.texture import Size
 from ..maths.harmonics import hanning, light_lobe, rotate, zonal_lobe
 from ..modules import MODULES, S3HO
 from ..modules.s3ho import BOUNCE, SENDERS, unpacked
-from ..pipeline.frame import Frame
+from ..pipeline.frame import Frame, check_frame
 from ..scene.camera import Camera
 from ..scene.lights import DirectionalLight
 from ..scene.scene import Scene
@@ -72,6 +72,7 @@ class _Texels(Mapping[str, np.ndarray]):
 
 def lit_scene(frame: Frame) -> Scene:
     """The frame's scene. Raises `ParameterError` if the frame lacks the scene or a buffer that glyphs need."""
+    check_frame(frame, "glyph")
     if missing := [name for name in HARMONICS if name not in frame.buffers]:
         modules = ", ".join(name for name, module in MODULES.items() if "sh0" in module.derived)
         raise ParameterError(

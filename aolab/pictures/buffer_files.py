@@ -10,6 +10,7 @@ from typing import IO
 import numpy as np
 
 from ..errors import FileError
+from ..input import as_path
 from ..output import replacing
 
 SUFFIXES = (".npz", ".exr")
@@ -18,7 +19,7 @@ CHANNELS = {1: "Y", 2: "XY", 3: "RGB", 4: "XYZW"}  # a viewer takes a channel A 
 
 def check_suffix(path: str | PathLike[str]) -> None:
     """Raise `FileError` unless buffers can be written to a file of this name; names without a suffix mean .npz."""
-    suffix = Path(path).suffix.lower()
+    suffix = as_path(path).suffix.lower()
     if suffix and suffix not in SUFFIXES:
         raise FileError(f"cannot write {path}: buffers are written as {' or '.join(SUFFIXES)}")
 

@@ -3,6 +3,7 @@
 The functions take any object with the attributes that they read: the classes stand in folders above this one.
 """
 
+from collections.abc import Iterable
 from itertools import count
 from typing import Any, Protocol
 
@@ -113,6 +114,13 @@ def environment_png(radiance: np.ndarray) -> bytes:
 def titled(frame: Any, number: int) -> str:
     """The caption of a frame on a sheet: its module, or its number."""
     return str(frame.info.get("module", f"frame {number + 1}")) if hasattr(frame, "info") else f"picture {number + 1}"
+
+
+def captioned(pictures: Any) -> list[tuple[str, Any]]:
+    """(caption, picture) of each picture; a tuple has its own. Raises `ParameterError` for anything but a list."""
+    if not isinstance(pictures, Iterable):
+        raise ParameterError(f"pictures = {pictures!r:.80} is not a list of pictures")
+    return [item if isinstance(item, tuple) else (titled(item, number), item) for number, item in enumerate(pictures)]
 
 
 def pixels_of(picture: Any) -> np.ndarray:

@@ -8,7 +8,7 @@ from PIL import Image
 
 from ..errors import ParameterError
 from . import html
-from .display import pixels_of, titled
+from .display import captioned, pixels_of
 
 QUALITY = 90  # of WebP: a page with ten pictures of 400 × 225 is lighter than 0.5 MB
 MOVE = (
@@ -31,7 +31,7 @@ class Flipbook:
     """
 
     def __init__(self, pictures: Sequence[Any], about: str = "", first: int = 0) -> None:
-        pairs = [item if isinstance(item, tuple) else (titled(item, n), item) for n, item in enumerate(pictures)]
+        pairs = captioned(pictures)
         if not pairs:
             raise ParameterError("a flipbook needs at least one picture")
         if not 0 <= first < len(pairs):

@@ -3,14 +3,13 @@
 import io
 import json
 from os import PathLike
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
 from ..errors import FileError
-from ..input import Budget, read_file
+from ..input import Budget, as_path, read_file
 from ..output import replacing
 
 KEYWORD = "aolab"
@@ -21,7 +20,7 @@ def save_png(path: str | PathLike[str], image: np.ndarray, info: dict[str, Any])
 
     An existing file is replaced atomically.
     """
-    if Path(path).suffix.lower() != ".png":
+    if as_path(path).suffix.lower() != ".png":
         raise FileError(f"cannot write {path}: images are written as .png")
     text = PngImagePlugin.PngInfo()
     text.add_text(KEYWORD, json.dumps(info))

@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from ..errors import ParameterError
 from .buffers import buffer_picture, buffer_pixels, first_buffer, framed, scale_of
-from .display import pixels_of, titled
+from .display import captioned, pixels_of, titled
 
 MARGIN, LINE, CELL = 8, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
 _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
@@ -34,7 +34,7 @@ def contact_sheet(pictures: Sequence[Any], columns: int = 2, *, title: str = "")
     caption gets the name of its module; a frame without an image shows its first buffer. Smaller pictures are
     enlarged by whole numbers as far as they fit. Raises `ParameterError` for anything else, and for no pictures.
     """
-    pairs = [item if isinstance(item, tuple) else (titled(item, number), item) for number, item in enumerate(pictures)]
+    pairs = captioned(pictures)
     if not pairs:
         raise ParameterError("a contact sheet needs at least one picture")
     cells = [(caption, pixels_of(picture)) for caption, picture in pairs]

@@ -79,8 +79,10 @@ class Frame:
         """Compute the buffers that wait until they are read: those of these names, or all.
 
         `complete("image")` computes the picture alone, in a single pass where the method has one.
-        Raises the errors of `Lab.render`.
+        Raises the errors of `Lab.render`, and `ParameterError` for an unknown name.
         """
+        for name in names:
+            self._check_name(name)
         waiting = {*(names or self.buffers)} - self.made.keys() - self.derived.keys()
         shortest = next((one for one in self.later if waiting and waiting <= {*one.names}), None)
         if shortest is not None:
@@ -105,8 +107,7 @@ class Frame:
         return tuple(self.info["size"])  # type: ignore[return-value]
 
     def __getitem__(self, name: str) -> np.ndarray:
-        if name not in self.buffers:
-            raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.buffers)}")
+        self._check_name(name)
         if name not in self._arrays:
             if name in self.derived:
                 make, raw = self.derived[name]
@@ -120,6 +121,10 @@ class Frame:
                     pixels = np.where(np.isfinite(self["viewZ"]), pixels, np.float32(np.nan))
             self._arrays[name] = pixels
         return self._arrays[name]
+
+    def _check_name(self, name: str) -> None:
+        if name not in self.buffers:
+            raise ParameterError(f"this frame has no buffer '{name}'{suggestion(name, self.buffers)}")
 
     def channels(self, name: str) -> np.ndarray:
         """A texture with every channel that it has, (H, W) or (H, W, channels); `frame[name]` leaves padding out."""
@@ -233,3 +238,9 @@ def lend(holder: Holder, pool: Pool, lent: list[Any]) -> Holder:
     """Give the textures `lent` back to the pool when nobody keeps their holder."""
     weakref.finalize(holder, pool.give_back, lent)
     return holder
+
+
+def check_frame(frame: object, what: str) -> None:
+    """Raise `ParameterError` for anything but a frame; the message names `what` was called."""
+    if not isinstance(frame, Frame):
+        raise ParameterError(f"{what}: {frame!r:.80} is not a frame; aolab.render and aolab.reference return frames")

@@ -4,12 +4,11 @@ import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
-from pathlib import Path
 
 import numpy as np
 
 from ..errors import Notice, SceneError
-from ..input import Budget
+from ..input import Budget, as_path
 from ..maths.harmonics import evaluate, irradiance, project
 from .camera import Vec3
 
@@ -90,7 +89,11 @@ class Environment:
     @classmethod
     def constant(cls, rgb: Vec3 | float) -> "Environment":
         """The same radiance `rgb` from everywhere: the irradiance is π·rgb on any surface."""
-        return cls(np.broadcast_to(np.asarray(rgb, np.float32), (1, 2, 3)), "constant")
+        try:
+            radiance = np.broadcast_to(np.asarray(rgb, np.float32), (1, 2, 3))
+        except (TypeError, ValueError):
+            raise SceneError(f"constant: rgb = {rgb!r:.80} is not a number or three numbers") from None
+        return cls(radiance, "constant")
 
     @classmethod
     def sky(
@@ -126,7 +129,7 @@ class Environment:
         """
         from ..pictures.images import RADIANCE_SUFFIXES, linear_from_srgb, read_image, read_radiance
 
-        path, budget = Path(path), Budget(memory)
+        path, budget = as_path(path), Budget(memory)
         if path.suffix.lower() in RADIANCE_SUFFIXES:
             return cls(read_radiance(path, budget=budget), path.name)
         return cls(linear_from_srgb(read_image(path, path.name, budget=budget)[..., :3]), path.name)

@@ -45,8 +45,8 @@ def _run(arguments: list[str], imported: Callable[[], object]) -> int:
     import warnings
 
     from ..errors import Notice
+    from ..interrupts import after_imports
     from .app import app
-    from .interrupts import after_imports
 
     imported()
     warnings.simplefilter("always", Notice)

@@ -4,6 +4,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from fractions import Fraction
+from numbers import Real
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from PIL import Image
 from ..errors import FileError, ParameterError, suggestion
 from ..extras import need
 from ..gl.texture import Size
-from ..input import read_text
+from ..input import as_path, read_text
 from ..loading import load
 from ..loading.named import describe_scene
 from ..modules import MODULES, Module, find
@@ -66,13 +67,19 @@ def animate(
     Raises `ParameterError` for arguments without meaning and `FileError` for a file that cannot be written, before any
     work. Returns the path.
     """
-    if not 0 < seconds <= 3600:
+    if not isinstance(seconds, Real) or not 0 < seconds <= 3600:
         raise ParameterError(f"seconds = {seconds!r} is not a number above 0, up to 3600")
     if not isinstance(fps, int) or not 1 <= fps <= 240:
         raise ParameterError(f"fps = {fps!r} is not a whole number from 1 to 240")
+    if not isinstance(orbit, Real):
+        raise ParameterError(f"orbit = {orbit!r:.80} is not True, False or a number of degrees")
+    if path is not None and not (isinstance(path, Sequence) and all(isinstance(one, Camera) for one in path)):
+        raise ParameterError(f"path = {path!r:.80} is not a list of cameras")
     if path is not None and len(path) < 2:
         raise ParameterError(f"path has {len(path)} cameras; a path needs at least two")
-    out = Path(out)
+    if vary is not None and not (isinstance(vary, Mapping) and all(map(_is_range, vary.values()))):
+        raise ParameterError(f"vary = {vary!r:.80} is not {{parameter: (first, last)}}, with two numbers")
+    out = as_path(out, "out")
     writer = _writer(out)
     modules = [find(one, MODULES, **parameters) for one in (module, beside) if one is not None]
     count = max(1, round(seconds * fps))
@@ -121,6 +128,10 @@ def along(cameras: Sequence[Camera], t: float) -> Camera:
 
     fov = float(np.clip(spline([one.fov for one in four]), 1, 179))
     return replace(four[1], eye=point("eye"), target=point("target"), up=point("up"), fov=fov)
+
+
+def _is_range(ends: object) -> bool:
+    return isinstance(ends, Sequence) and len(ends) == 2 and all(isinstance(end, Real) for end in ends)
 
 
 def _check_names(vary: Mapping[str, Range], of_scene: Sequence[str], modules: Sequence[Module]) -> None:

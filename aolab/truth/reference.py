@@ -3,6 +3,7 @@
 import warnings
 from collections.abc import Iterable
 from dataclasses import asdict
+from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
@@ -185,7 +186,7 @@ def _checked(buffers: Iterable[str], rays: int, seed: int, error: float | None, 
     next(strata(rays))
     if not isinstance(seed, int) or seed < 0:
         raise ParameterError(f"seed = {seed!r} is not a whole number from 0 on")
-    if error is not None and not 0 < error < 1:
+    if error is not None and not (isinstance(error, Real) and 0 < error < 1):
         raise ParameterError(f"error = {error!r} is not a share in (0, 1) of the buffer's root mean square")
     measured = {"obscurance", "transfer"} & set(wanted) and question.measure != "classical"
     faded = isinstance(question.falloff, str) and question.falloff != "classical"

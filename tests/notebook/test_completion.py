@@ -76,7 +76,7 @@ FRAME = aolab.Frame({"visibility": np.ones((1, 1)), "mine": np.ones((1, 1))}, ti
     "before", ['frame.show("', 'aolab.compare(frame, truth, "', 'aolab.compare(frame, t, buffers=["']
 )
 def test_a_string_offers_the_buffers_of_the_frame(before):
-    assert candidates(before, {"frame": FRAME}) == ["mine", "visibility"]
+    assert candidates(before, {"frame": FRAME, "ssao": aolab.SSAO()}) == ["mine", "visibility"]
 
 
 # --- IPython itself
@@ -87,7 +87,7 @@ def tab():
     """{text of a cell: IPython's completions at its end}, with a `frame` and a `scene` among the variables."""
     completer = pytest.importorskip("IPython.core.completer")
     shell = pytest.importorskip("IPython.core.interactiveshell").InteractiveShell()
-    shell.user_ns |= {"aolab": aolab, "scene": "boxes", "frame": FRAME}
+    shell.user_ns |= {"aolab": aolab, "scene": "boxes", "frame": FRAME, "ssao": aolab.SSAO()}
     install(shell)
 
     def completions(cell: str) -> list[str]:
@@ -108,6 +108,18 @@ def tab():
         ('frame["m', ["mine"]),
         ('frame.show("m', ["mine"]),
         ("aolab.SSAO(rad", ["radius="]),
+        ("ssao.replace(rad", ["radius="]),
+        ("mine = ssao.replace(\n    filter='b", ["bilateral", "box4"]),
+        ("aolab.render(scene, ssao, rad", ["radius="]),
+        ("aolab.render(scene, aolab.SSAO(radius=2), bi", ["bias="]),
+        ('aolab.render(scene, "ssao?radius=2", dir', ["directions="]),
+        ('aolab.render(scene, "ssao", camera=aolab.Camera(eye=(0, 1, 2)), rad', ["radius="]),
+        ('aolab.load("toasters?', ["toasters?count=", "toasters?time="]),
+        ('aolab.load("toasters?time=1&', ["toasters?time=1&count="]),
+        ('aolab.render("toasters?ti', ["toasters?time="]),
+        ('aolab.render(scene, "ssao?rad', ["ssao?radius="]),
+        ('aolab.render(scene, "ssao?filter=b', ["ssao?filter=bilateral", "ssao?filter=box4"]),
+        ('aolab.render(scene, "ssao+rsm?rsm_rad', ["ssao+rsm?rsm_radius="]),
     ],
 )
 def test_tab_in_ipython(tab, cell, offered, tmp_path, monkeypatch):

@@ -79,38 +79,6 @@ main()
 
 
 @posix
-def test_an_interrupt_waits_for_the_end_of_an_import(tmp_path):
-    """A library may swallow every exception in its import, as trimesh does, and the interrupt with them."""
-    (tmp_path / "greedy.py").write_text(
-        """
-import time
-try:
-    print("now", flush=True)
-    time.sleep(0.5)
-except BaseException:
-    print("swallowed", flush=True)
-"""
-    )
-    program = """
-import signal, time
-from aolab.shell.interrupts import after_imports
-try:
-    with after_imports():
-        import greedy
-        time.sleep(20)
-except KeyboardInterrupt:
-    print("interrupted", flush=True)
-assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
-"""
-    process = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
-    assert process.stdout is not None
-    assert process.stdout.readline() == "now\n"
-    process.send_signal(signal.SIGINT)
-    assert process.communicate(timeout=15)[0] == "interrupted\n"
-    assert process.returncode == 0
-
-
-@posix
 def test_statistics_go_through_to_devices(tmp_path, full_device):
     full = run(f"render boxes --size 16x9 --stats {full_device}", cwd=tmp_path)
     assert (full.returncode, full.stderr) == (2, f"aolab: cannot write {full_device}: No space left on device\n")

@@ -151,11 +151,16 @@ def test_lists_that_go_together_and_random_draws():
         ({"on_error": "ignore"}, "on_error = 'ignore' is not one of: record, raise"),
         ({"shard": "3/3"}, "shard = '3/3' is not I/N"),
         ({"workers": -1}, "workers = -1"),
+        ({"workers": "two"}, "workers = 'two' is not a whole number"),
+        ({"radius": None}, "no case can be rendered; the first: ssao: radius = None is not valid"),
+        ({"directions": [0, -1]}, "no case can be rendered; the first: ssao: directions = 0 is not valid"),
+        ({"size": 5}, "size = 5 is not two whole numbers"),
+        ({"size": "48x32"}, "size = '48x32' is not two whole numbers"),
     ],
 )
 def test_a_sweep_that_cannot_work_is_refused(arguments, words):
     with pytest.raises(ParameterError, match=words.replace("(", r"\(")):
-        aolab.sweep("boxes", "ssao", size=(48, 32), **arguments)
+        aolab.sweep("boxes", "ssao", **{"size": (48, 32), **arguments})
 
 
 def test_a_case_that_raises_is_a_row_with_its_error():

@@ -8,7 +8,7 @@ from PIL import Image
 from ...errors import ParameterError
 from ...modules import MODULES
 from ...pictures.html import png
-from ...pipeline.frame import Frame
+from ...pipeline.frame import Frame, check_frame
 from ...pipeline.state import SurfaceState
 from ..reading import inside
 from .inputs import inputs
@@ -58,6 +58,7 @@ def microscope(frame: Frame, pixel: tuple[int, int]) -> Microscope:
     your own modules that derive from `aolab.modules.marched.Marched` and write `visibility`.
     Raises `ParameterError` for another module, a frame that no lab rendered, and a pixel outside or in the background.
     """
+    check_frame(frame, "microscope")
     column, row = inside(pixel, frame.size, "microscope")
     state = frame.kept
     if not isinstance(state, SurfaceState):

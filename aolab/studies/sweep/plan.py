@@ -4,21 +4,21 @@ import itertools
 import tomllib
 import warnings
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...errors import FileError, Notice, ParameterError, suggestion
+from ...errors import Error, FileError, Notice, ParameterError, suggestion
 from ...gl.texture import Size, check_size
 from ...input import read_text
 from ...modules import MODULES, Module, find
 from ...modules.parameters import Choice
 from ...progress import progress_bar
 from ...scene.camera import Camera
-from .case import Case, Settings, loaded, module_name, question, scene_name
+from .case import Case, Settings, case_module, loaded, module_name, question, scene_name
 from .measured import Measure, default, needs_truth, parse
 
 DISTRIBUTIONS = ("uniform", "loguniform", "integers", "choice")
@@ -104,6 +104,19 @@ class Plan:
                 raise ParameterError(f"sweep: no module here has the parameter '{name}'{suggestion(name, known)}")
             warnings.warn(f"sweep: {', '.join(modules)} has no '{name}': left out there", Notice, stacklevel=5)
 
+    @staticmethod
+    def _check_values(cases: Sequence[Case]) -> None:
+        """Values that some modules or cases take are rows of the table; if no case takes them, they are a mistake."""
+        first = None
+        for case in cases:
+            try:
+                case_module(case)
+            except Error as error:
+                first = first or error
+            else:
+                return
+        raise ParameterError(f"sweep: no case can be rendered; the first: {first}")
+
     def points(self) -> list[dict[str, Any]]:
         """The parameter values of the sweep, before a module leaves out those that it lacks."""
         grid = [dict(zip(self.grid, values, strict=True)) for values in itertools.product(*self.grid.values())]
@@ -154,7 +167,7 @@ class Plan:
         """All cases, without repeats. Cases that share a truth are neighbours; so are those that share a G-buffer.
 
         `progress` is that of `progress_bar`: 100,000 cases take seconds. Raises `ParameterError` for a parameter that
-        no case takes.
+        no case takes, and for values with which no case can be rendered.
         """
         found: dict[str, Case] = {}
         points = self.points()
@@ -173,6 +186,7 @@ class Plan:
         for name in points[0]:
             if not any(name in case.parameters for case in found.values()):
                 raise ParameterError(f"sweep: no case takes '{name}', a parameter of {_owner(self.modules, name)}")
+        self._check_values(list(found.values()))
         groups: dict[tuple[Any, ...], list[Case]] = {}
         for case in found.values():
             groups.setdefault(question(case, self.settings), []).append(case)
@@ -225,8 +239,9 @@ def as_list(value: Any) -> list[Any]:
 
 def sizes_of(size: Any) -> list[Size]:
     """(width, height), or several of them."""
-    pairs = [size] if len(size) == 2 and all(np.isscalar(side) for side in size) else list(size)
-    return [(int(width), int(height)) for width, height in pairs]
+    several = isinstance(size, Iterable) and not isinstance(size, str) and not all(np.isscalar(side) for side in size)
+    sizes: list[Any] = list(size) if several else [size]
+    return [check_size(one) for one in sizes]
 
 
 def cameras_of(camera: Any) -> dict[str, Camera | None]:

@@ -58,8 +58,8 @@ def run(
     """
     if on_error not in ("record", "raise"):
         raise ParameterError(f"on_error = {on_error!r} is not one of: record, raise")
-    if workers < 0:
-        raise ParameterError(f"workers = {workers} is not a whole number from 0 on")
+    if not isinstance(workers, int) or workers < 0:
+        raise ParameterError(f"workers = {workers!r} is not a whole number from 0 on")
     named = _named(cases, settings, progress)
     known = {name: record for name, _ in named if records and (record := records.load(name))}
     wanted = {
