@@ -16,7 +16,16 @@ author = "the aolab authors"
 copyright = author
 version = release = __version__
 
-extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.extlinks", "sphinx_design", "docstrings", "mathml", "tables"]
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.extlinks",
+    "sphinx_design",
+    "docstrings",
+    "kernels",
+    "mathml",
+    "tables",
+]
 exclude_patterns = ["_build", "_ext", "generated"]
 
 # The pages' code computes their pictures and figures; none of them is in the repository. A page runs again if its cells

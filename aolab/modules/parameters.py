@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, get_args, get_origin
+from weakref import WeakKeyDictionary
 
 from pydantic import BaseModel, ConfigDict, Field, PydanticUserError, ValidationError, model_serializer
 
@@ -197,10 +198,20 @@ def is_word(parameters: type[Parameters], name: str) -> bool:
 
 def words(parameters: type[Parameters], name: str) -> list[str]:
     """The words that are values of a parameter: all of them, or those besides numbers, as auto."""
-    about = parameters.model_json_schema()["properties"][name]
+    about = _properties(parameters)[name]
     branches = [about, *about.get("anyOf", [])]
     values = [value for branch in branches for value in (*branch.get("enum", ()), branch.get("const"))]
     return [value for value in values if isinstance(value, str)]
+
+
+_schemas: WeakKeyDictionary[type, dict[str, Any]] = WeakKeyDictionary()  # pydantic takes milliseconds for each
+
+
+def _properties(parameters: type[Parameters]) -> dict[str, Any]:
+    """The JSON schema of each parameter."""
+    if parameters not in _schemas:
+        _schemas[parameters] = parameters.model_json_schema()["properties"]
+    return _schemas[parameters]
 
 
 def unknown(parameters: type[Parameters], name: str) -> str:
@@ -214,8 +225,7 @@ def describe(parameters: type[Parameters], name: str) -> dict[str, str]:
     """One parameter as text: name, type, default, range, unit, description; `with`, the choice that it belongs to."""
     if name not in parameters.model_fields:
         parameters = parameters.stated()[name]
-    schema = parameters.model_json_schema()
-    properties = schema["properties"][name]
+    properties = _properties(parameters)[name]
     branches = [properties, *properties.get("anyOf", [])]
     bounds: dict[str, Any] = {}
     for branch in branches:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from aolab import Environment
-from aolab.scene.environment import averaged
+from aolab.scene.environment import averaged, direction_from_uv
 from aolab.scene.irradiance import OpenIrradiance, mean_radiance
 
 
@@ -32,6 +32,20 @@ def test_a_sun_is_its_irradiance_times_the_cosine():
     azimuth = 2 * np.pi * ((np.arange(64) + 0.5) / 64 - 0.5)  # of the columns, from -z towards +x
     np.testing.assert_allclose(table[16, :, 0], whole * np.maximum(np.sin(azimuth), 0), atol=0.02 * whole)
     np.testing.assert_allclose(table[[0, -1]], 0, atol=0.02 * whole)
+
+
+@pytest.mark.parametrize("shape", [(64, 128), (100, 300), (70, 129), (4, 5)])
+def test_the_table_is_the_sum_over_all_texels(shape):
+    """∫ L max(0, n · ω) dω / π by brute force, for maps of any width."""
+    radiance = np.random.default_rng(1).random((*shape, 3)).astype(np.float32)
+    times = [-(-800 // size) for size in shape]  # fine texels: the cosine is nearly constant in each
+    large = radiance.repeat(times[0], axis=0).repeat(times[1], axis=1)
+    values, directions, solid_angles = averaged(large, large.shape[:2])
+    for row, column in ((0, 0), (5, 7), (16, 0), (16, 40), (31, 63), (32, 2)):
+        normal = direction_from_uv(((column + 0.5) / 64, row / 32))
+        weights = np.maximum(directions @ normal, 0) * solid_angles
+        expected = (weights[..., None] * values).sum(axis=(0, 1)) / weights.sum()
+        np.testing.assert_allclose(mean_radiance(Environment(radiance))[row, column], expected, atol=2e-3)
 
 
 def test_maps_of_few_texels_have_no_holes():
