@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import get_data_path
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from ..errors import Error, Notice
 from ..gl.texture import Size
@@ -17,6 +16,7 @@ from ..measures import compare
 from ..modules import MODULES, Module, find
 from ..modules.parameters import AUTO
 from ..pictures.buffers import buffer_pixels, first_buffer, scale_of
+from ..pictures.font import caption_font
 from ..pipeline.api import shared_lab
 from ..pipeline.frame import Frame
 from ..scene.camera import Camera
@@ -40,7 +40,6 @@ KEYS = {
     "q": "close",
 }
 LINE, MARGIN, LETTER = 16, 8, 7  # pixels; LETTER: the mean width of one
-FONT = str(Path(get_data_path(), "fonts", "ttf", "DejaVuSans.ttf"))  # Pillow's own lacks × and Greek letters
 Line = tuple[str, tuple[int, ...]]
 INK, FAINT, CHOSEN, PAPER = (255, 255, 255), (190, 190, 190), (255, 210, 90), (0, 0, 0, 150)
 
@@ -259,7 +258,7 @@ def _shown(name: str, values: np.ndarray) -> np.ndarray:
 
 def _written(image: Image.Image, lines: Sequence[Line]) -> Image.Image:
     """The image under lines of text on a dark ground."""
-    font = ImageFont.truetype(FONT, 12)
+    font = caption_font(12)
     draw = ImageDraw.Draw(image, "RGBA")
     width = max(draw.textlength(text, font) for text, _ in lines)
     draw.rectangle((0, 0, width + 2 * MARGIN, LINE * len(lines) + MARGIN), fill=PAPER)

@@ -135,11 +135,13 @@ def buffer_picture(name: str, values: np.ndarray, title: str = "") -> Image.Imag
 
 def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
     """`pixels` (H, W, 3) under a title, with the bar of `scale` on the right."""
-    from PIL import ImageDraw, ImageFont
+    from PIL import ImageDraw
+
+    from .font import caption_font
 
     height, width = pixels.shape[:2]
     sheet = Image.new("RGB", (width + (BAR + TICK if scale else 0), height + LINE), PAPER)
-    ImageDraw.Draw(sheet).text((2, 1), title, INK, font=ImageFont.load_default(size=13))
+    ImageDraw.Draw(sheet).text((2, 1), title, INK, font=caption_font(12))
     sheet.paste(Image.fromarray(pixels), (0, LINE))
     if scale:
         sheet.paste(bar_picture(scale, height), (width, LINE))
@@ -148,15 +150,17 @@ def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
 
 def bar_picture(scale: Scale, height: int) -> Image.Image:
     """The colour bar of a scale, with numbers beside it."""
-    from PIL import ImageDraw, ImageFont
+    from PIL import ImageDraw
+
+    from .font import caption_font
 
     bar = Image.new("RGB", (BAR + TICK, height), PAPER)
-    draw, font = ImageDraw.Draw(bar), ImageFont.load_default(size=13)
+    draw = ImageDraw.Draw(bar)
     ramp = np.linspace(scale.high, scale.low, height)[:, None].repeat(BAR, axis=1)
     bar.paste(Image.fromarray(scale.pixels(ramp)), (8, 0))
     for share in np.linspace(0, 1, TICKS):
         y = min(max(round((1 - share) * (height - 1)) - 8, 0), height - 15)
-        draw.text((BAR + 12, y), f"{scale.low + share * (scale.high - scale.low):.3g}", INK, font=font)
+        draw.text((BAR + 12, y), f"{scale.low + share * (scale.high - scale.low):.3g}", INK, font=caption_font(12))
     return bar
 
 

@@ -5,11 +5,12 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image, ImageDraw
 
 from ..errors import ParameterError
 from .buffers import buffer_picture, buffer_pixels, first_buffer, framed, scale_of
 from .display import captioned, pixels_of, titled
+from .font import Font, caption_font
 
 MARGIN, LINE, CELL = 8, 24, 12  # pixels; CELL: the padding of a table's cell, left and right
 _PAPER, _INK, _FAINT = (250, 250, 248), (40, 40, 40), (200, 200, 196)
@@ -40,7 +41,7 @@ def contact_sheet(pictures: Sequence[Any], columns: int = 2, *, title: str = "")
     cells = [(caption, pixels_of(picture)) for caption, picture in pairs]
     height, width = (max(pixels.shape[axis] for _, pixels in cells) for axis in (0, 1))
     columns = min(columns, len(cells))
-    font = ImageFont.load_default(size=15)
+    font = caption_font(13)
     captions = [_wrapped(caption, width, font) or [""] for caption, _ in cells]
     rows = [captions[first : first + columns] for first in range(0, len(captions), columns)]
     lines = _wrapped(title, columns * (width + MARGIN) - MARGIN, font)
@@ -87,7 +88,7 @@ def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
 
     The first column is aligned left, the others right.
     """
-    font = ImageFont.load_default(size=15)
+    font = caption_font(13)
     widths = [int(max(font.getlength(row[column]) for row in rows)) + 2 * CELL for column in range(len(rows[0]))]
     lines = _wrapped(title, sum(widths), font)
     top = MARGIN + LINE * len(lines)
@@ -104,15 +105,12 @@ def table(rows: Sequence[Sequence[str]], *, title: str = "") -> Image.Image:
     return picture
 
 
-_Font = ImageFont.FreeTypeFont | ImageFont.ImageFont
-
-
-def _write(draw: ImageDraw.ImageDraw, lines: list[str], corner: tuple[int, int], font: _Font) -> None:
+def _write(draw: ImageDraw.ImageDraw, lines: list[str], corner: tuple[int, int], font: Font) -> None:
     for number, line in enumerate(lines):
         draw.text((corner[0], corner[1] + number * LINE), line, _INK, font=font)
 
 
-def _wrapped(text: str, width: float, font: _Font) -> list[str]:
+def _wrapped(text: str, width: float, font: Font) -> list[str]:
     lines: list[str] = []
     for word in text.split():
         longer = f"{lines[-1]} {word}" if lines else word

@@ -56,3 +56,11 @@ def test_gray_is_white_in_the_background():
 def test_gray_of_anything_but_shares_is_refused(values):
     with pytest.raises(ParameterError, match=r"no array \(H, W\) of shares"):
         gray(values)
+
+
+@pytest.mark.parametrize(("one", "other"), [("é", "ö"), ("²", "³"), ("π", "µ"), ("×", "–")])
+def test_captions_have_accents_and_mathematical_characters(one, other):
+    """A font draws all characters that it lacks as the same box."""
+    picture = np.zeros((20, 40, 3), np.uint8)
+    sheets = [np.asarray(contact_sheet([(caption, picture)])) for caption in (one, other)]
+    assert (sheets[0] != sheets[1]).any()

@@ -10,7 +10,7 @@ from aolab.studies import compare_modules, ranking, sheet
 
 SMALL = {"size": (64, 48), "rays": 16, "flip": False}
 # the truth of so few rays is noisy, and `compare` warns of it
-pytestmark = pytest.mark.filterwarnings("ignore:buffer .* the reference's own standard error:aolab.errors.Notice")
+pytestmark = pytest.mark.filterwarnings("ignore:buffer .* the truth's own standard error:aolab.errors.Notice")
 
 
 @pytest.fixture
@@ -99,6 +99,16 @@ def test_a_buffer_that_a_module_lacks_is_an_error(boxes):
 def test_one_module_may_stand_alone(boxes):
     (entry,) = compare_modules(boxes, "ssao", **SMALL)
     assert entry.label == "ssao"
+
+
+def test_the_noise_of_the_truth_is_noted_once(boxes):
+    with pytest.warns(
+        aolab.Notice, match="'visibility': the truth's own standard error is .* 3 of 3 results"
+    ) as notices:
+        found = compare_modules(boxes, ["ssao", "hao", "rotated_ssao"], buffer="visibility", **SMALL)
+    assert len(notices) == 1
+    shares = [one.noise / one.rmse for one in (entry.comparison["visibility"] for entry in found)]
+    assert f"{min(shares):.0%} to {max(shares):.0%}" in str(notices[0].message)
 
 
 def test_a_comparison_without_its_buffer_or_library_is_refused_before_rays_are_traced(boxes, monkeypatch):

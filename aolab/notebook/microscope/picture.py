@@ -36,7 +36,7 @@ def draw(frame: Frame, pixel: tuple[int, int], passes: Sequence[Sampled]) -> Ima
         "that block; thick: contributes most; stars: lights",
         fontsize=9, y=1 - 0.08 / height, va="top",
     )  # fmt: skip
-    figure.tight_layout(rect=(0, 0, 1, 1 - 0.3 / height), h_pad=2.5)
+    figure.tight_layout(rect=(0, 0.3 / height, 1, 1 - 0.3 / height), h_pad=2.5)
     canvas.draw()
     return Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
 
