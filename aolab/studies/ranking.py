@@ -1,6 +1,7 @@
 """Modules compared with the truth and sorted by error: the study behind `aolab compare`."""
 
 import statistics
+import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -8,11 +9,11 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from ..errors import ParameterError
+from ..errors import Notice, ParameterError
 from ..extras import need
 from ..gl.texture import Size
 from ..loading import load
-from ..measures.comparison import Comparison, compare
+from ..measures.comparison import Comparison, measured
 from ..modules import MODULES, Module, find
 from ..pictures import html
 from ..pipeline.api import shared_lab
@@ -113,9 +114,9 @@ def compare_modules(
 
     Without a `buffer`, it is the one that all the modules claim (`Module.claims`), and `ambient` if their claims
     differ: in `visibility`, methods for coloured light do not differ from SSAO.
-    The least error comes first. A module is compared with a reference of its own radius and falloff, a module without a
-    radius with the reference of the first module that has one. `radius` (scene units) replaces all radii. `flip=False`
-    leaves out the slowest measure.
+    The least error comes first. A `Notice` names modules whose RMSE is in good part noise of the reference. A module
+    is compared with a reference of its own radius and falloff, a module without a radius with the reference of the
+    first module that has one. `radius` (scene units) replaces all radii. `flip=False` leaves out the slowest measure.
     Raises `ParameterError`, before any ray is traced, if a module lacks the buffer or a library is missing, and the
     exceptions of `aolab.render` and `aolab.reference`.
     """
@@ -136,7 +137,7 @@ def compare_modules(
             reach = {"like": like} if like else {"radius": None if module.claims == "ambient" else radius}
             truth = reference(scene, **view, rays=rays, buffers=(buffer,), **reach)  # type: ignore[arg-type]
             frame = shared_lab().render(scene, module, **view, accumulate=accumulate)
-            comparison = compare(frame, truth, buffer, flip=flip)
+            comparison = measured(frame, truth, [buffer], flip=flip)
             frame.complete()  # compiles the shaders
             again = [
                 shared_lab().render(scene, module, **view, accumulate=accumulate).complete().frame_ms
@@ -145,6 +146,14 @@ def compare_modules(
             info = {"scene": scene.source or scene.name, "rays": rays, "renderer": frame.info["renderer"]}
             entries.append(Entry(label(module, scene), module, comparison, statistics.median(again), info))
             bar.update()
+    if noisy := {entry.label: _only(entry) for entry in entries if _only(entry).is_noisy}:
+        worst = max(one.noise / one.rmse for one in noisy.values())
+        warnings.warn(
+            f"buffer '{buffer}': the reference's own standard error is up to {worst:.0%} of the RMSE of "
+            f"{', '.join(noisy)}; give the reference more `rays`",
+            Notice,
+            stacklevel=2,
+        )
     return Ranking(sorted(entries, key=lambda entry: entry.comparison[buffer].rmse))
 
 
