@@ -1,6 +1,7 @@
 """Runs an estimate: at its scale, over its sample sets, filtered, and brought to full size."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
 
 from ..errors import ParameterError
 from ..gl.bindings import Bindings
@@ -11,6 +12,8 @@ from . import filters
 from .pass_runner import Buffers, Where
 from .state import FrameContext, SurfaceState
 from .surfaces import facing
+
+MANY = 16  # accumulated frames that show their progress; the explorer's few are no long work
 
 
 def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()) -> Buffers:
@@ -72,11 +75,19 @@ def _accumulated(state: SurfaceState, what: Estimate, given: Sequence[Bindings],
     means = {name: runner.take(state.small_view.size, format) for name, format in formats.items()}
     for mean in means.values():  # one by one: together they may be more than a framebuffer takes
         runner.pool.framebuffer([mean]).clear()
-    for seed in seeds:
-        one = _passes(state, what, given, seed)
-        filters.accumulate(runner, one, means, formats, len(seeds))
-        runner.give_back(one)
+    with _bar(len(seeds)) as bar:
+        for seed in seeds:
+            one = _passes(state, what, given, seed)
+            filters.accumulate(runner, one, means, formats, len(seeds))
+            runner.give_back(one)
+            bar.update()
     return means
+
+
+def _bar(frames: int) -> Any:
+    from ..progress import progress_bar  # a part of the start-up, which a single frame does not need
+
+    return progress_bar("accumulate", frames, "frame", shown=None if frames >= MANY else False)
 
 
 def _passes(state: SurfaceState, what: Estimate, given: Sequence[Bindings], seed: int) -> Buffers:

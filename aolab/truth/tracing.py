@@ -1,9 +1,12 @@
 """The reference's work: points in chunks, on all cores."""
 
+import itertools
 import threading
 from collections.abc import Callable, Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from functools import partial
+from queue import SimpleQueue
 
 import numpy as np
 
@@ -16,6 +19,9 @@ from .moments import Moments, Pair
 from .points import Surface
 from .sample import Setting, randoms
 
+Advance = Callable[[int], object]  # takes a number of points that are done
+Work = Callable[[int, Advance], None]  # from this point on
+LOOK = 0.1  # seconds between two looks at the work that is done
 CHUNK = 16_384  # points a thread has in hand: a few hundred kB an array, which stays within a core's cache
 
 
@@ -34,27 +40,29 @@ def trace(
 
     stop = threading.Event()
 
-    def work(batch: int, where: np.ndarray, start: int) -> int:
+    def work(batch: int, where: np.ndarray, start: int, advance: Advance) -> None:
         chunk = where[start : start + CHUNK]
         random = randoms(seed, batch, start)
-        part = integrate(setting, surface.points(chunk), list(integrals), crosses, random, stop.is_set)
-        moments.put(chunk, part)
-        return len(chunk)
+        strata = itertools.count(1)
+        done = 0
+
+        def stopped() -> bool:  # called before each stratum's rays, two a point
+            nonlocal done
+            before, done = done, len(chunk) * next(strata) // (setting.rays // 2 + 1)
+            advance(done - before)
+            return stop.is_set()
+
+        moments.put(chunk, integrate(setting, surface.points(chunk), list(integrals), crosses, random, stopped))
+        advance(len(chunk) - done)
 
     everywhere = np.arange(len(surface))
-    _run(lambda start: work(0, everywhere, start), len(surface), progress, "reference", stop)
+    _run(partial(work, 0, everywhere), len(surface), progress, "reference", stop)
     result: dict[str, np.ndarray] = {}
     if error is not None:
         batches = batches_needed(surface, moments, wanted, error)
         for batch in range(1, batches.max(initial=1)):
             where = np.flatnonzero(batches > batch)
-            _run(
-                lambda start, b=batch, w=where: work(b, w, start),
-                len(where),
-                progress,
-                f"reference, batch {batch}",
-                stop,
-            )
+            _run(partial(work, batch, where), len(where), progress, f"reference, batch {batch}", stop)
         result["rays"] = (setting.rays * batches[:, None]).astype(np.float32)
     for name in wanted:
         result[name] = BUFFERS[name].value(moments, surface.albedo)
@@ -62,16 +70,20 @@ def trace(
     return result
 
 
-def _run(work: Callable[[int], int], total: int, progress: bool | None, what: str, stop: threading.Event) -> None:
+def _run(work: Work, total: int, progress: bool | None, what: str, stop: threading.Event) -> None:
     """`work` from every CHUNK-th point on, a thread a core: Embree and NumPy let each other run.
 
     Stops at the first error or Ctrl-C: `stop` is set, and the work that is under way ends after its next rays.
     """
+    done: SimpleQueue[int] = SimpleQueue()  # points; this thread advances the bar, as notebooks need it
     with _bar(total, progress, what) as advance, ThreadPoolExecutor(cores()) as pool:
-        jobs: list[Future[int]] = [pool.submit(work, start) for start in range(0, total, CHUNK)]
+        jobs: set[Future[None]] = {pool.submit(work, start, done.put) for start in range(0, total, CHUNK)}
         try:
-            for job in jobs:
-                advance(job.result())
+            while jobs:
+                ended, jobs = wait(jobs, LOOK, FIRST_COMPLETED)
+                for job in ended:
+                    job.result()
+                advance(sum(done.get() for _ in range(done.qsize())))
         except BaseException:
             stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
@@ -79,7 +91,7 @@ def _run(work: Callable[[int], int], total: int, progress: bool | None, what: st
 
 
 @contextmanager
-def _bar(total: int, progress: bool | None, what: str) -> Iterator[Callable[[int], object]]:
+def _bar(total: int, progress: bool | None, what: str) -> Iterator[Advance]:
     """A function that advances a `progress_bar`, which is shown as `progress` demands."""
     with progress_bar(what, total, "px", shown=progress, unit_scale=True) as bar:
         yield bar.update

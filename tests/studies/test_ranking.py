@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import aolab
+from aolab.errors import Notice
 from aolab.studies import compare_modules, ranking, sheet
 
 SMALL = {"size": (64, 48), "rays": 16, "flip": False}
@@ -16,6 +17,16 @@ pytestmark = pytest.mark.filterwarnings("ignore:buffer .* the truth's own standa
 @pytest.fixture
 def entries(boxes):
     return compare_modules(boxes, ["none", "ssao", aolab.SSAO(directions=64, steps=16)], radius=0.4, **SMALL)
+
+
+def test_one_notice_counts_the_results_whose_truth_is_noisy(boxes):
+    with pytest.warns(Notice) as seen:
+        found = compare_modules(boxes, ["ssao", "hao", "none"], radius=0.4, **{**SMALL, "rays": 4})
+    noisy = [one for one in found if one.comparison["visibility"].is_noisy]
+    assert len(noisy) >= 2
+    (notice,) = (str(one.message) for one in seen)
+    assert f"{len(noisy)} of {len(found)} results" in notice
+    assert seen[0].filename == __file__
 
 
 def test_the_best_comes_first(entries):

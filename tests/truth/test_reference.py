@@ -1,5 +1,6 @@
 """The function itself: its pixels, arguments, errors, seeds."""
 
+import re
 import sys
 
 import numpy as np
@@ -106,6 +107,13 @@ def test_a_bar_is_shown_when_asked_for(capfd, monkeypatch):
     assert "reference" in capfd.readouterr().err
     reference(wall_scene(), size=SIZE, rays=2, cache=False)
     assert capfd.readouterr().err == ""
+
+
+def test_the_bar_advances_while_all_points_are_in_hand(capfd, monkeypatch):
+    monkeypatch.delitem(sys.modules, "ipykernel", raising=False)
+    reference(wall_scene(), size=SIZE, rays=2048, cache=False, progress=True)  # fewer points than a chunk has
+    percentages = {int(one) for one in re.findall(r"(\d+)%", capfd.readouterr().err)}
+    assert len(percentages - {0, 100}) >= 2
 
 
 def test_a_curved_surface_is_seen_right_up_to_its_edges():

@@ -24,17 +24,17 @@ DASK = {
 
 @contextmanager
 def local_cluster(workers: int) -> Iterator["LocalCluster"]:
-    """A cluster of `workers`, which end with the block. Each draws with its share of the cores.
+    """A cluster of `workers`, which end with the block. Each draws with its share of the cores, and shows no bars.
 
     Raises `Error` if a worker fails to start.
     """
     from dask import config
     from distributed import LocalCluster
 
-    threads = {"LP_NUM_THREADS": str(max(1, cores() // workers))}
+    environment = {"LP_NUM_THREADS": str(max(1, cores() // workers)), "TQDM_DISABLE": "1"}
     runner = _deaf_loop()
     # without workers at first: their start takes seconds, in which an interrupt would leave no cluster to be closed
-    cluster = {"n_workers": 0, "threads_per_worker": 1, "env": threads, "dashboard_address": ":0"}
+    cluster = {"n_workers": 0, "threads_per_worker": 1, "env": environment, "dashboard_address": ":0"}
     with config.set(DASK):
         local = LocalCluster(loop=runner.loop, **cluster)
         try:
