@@ -11,7 +11,7 @@ from ..scene.view import View
 from . import filters
 from .pass_runner import Buffers, Where
 from .state import FrameContext, SurfaceState
-from .surfaces import facing
+from .surfaces import as_bindings, facing
 
 MANY = 16  # accumulated frames that show their progress; the explorer's few are no long work
 
@@ -24,7 +24,7 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
     frame, runner = state.frame, state.frame.runner
     given = list(given)
     if what.once:
-        known = [Bindings("the surfaces", facing(state.large, frame.module.normals)), frame.parameters, *given]
+        known = [as_bindings(facing(state.large, frame.module.normals)), frame.parameters, *given]
         given.append(Bindings("the passes before the samples", steps(frame, what.once, known)))
     if len(frame.seeds) == 1:
         formats = dict(what.outputs)
@@ -93,7 +93,7 @@ def _bar(frames: int) -> Any:
 def _passes(state: SurfaceState, what: Estimate, given: Sequence[Bindings], seed: int) -> Buffers:
     frame = state.frame
     known = [
-        Bindings("the surfaces", facing(state.small, frame.module.normals)),
+        as_bindings(facing(state.small, frame.module.normals)),
         state.occluders.bindings,
         frame.parameters,
         frame.samples(seed),

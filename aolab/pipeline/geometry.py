@@ -42,7 +42,7 @@ def kinds_of(scene: Scene) -> dict[str, Constant]:
 
     Most scenes have few of these, and their shaders are spared the rest.
     """
-    meshes = {instance.mesh for instance in scene.instances}
+    meshes = scene.meshes
     return {
         "one_sided": any(not mesh.material.double_sided for mesh in meshes),
         "cut_outs": any(mesh.material.has_holes for mesh in meshes),

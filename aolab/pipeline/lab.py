@@ -30,7 +30,8 @@ from ..scene.lights import Light
 from ..scene.scene import Scene
 from ..scene.view import View
 from ..version import __version__
-from . import lighting, surfaces
+from . import lighting, palettes, surfaces
+from .asked import all_asked
 from .doubts import doubts, is_own
 from .environments import EnvironmentMaps
 from .estimate import estimate
@@ -38,10 +39,11 @@ from .frame import Frame, Later, lend, noting
 from .geometry import Geometry
 from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, Lit, ToneMap
+from .palettes import Palettes
 from .pass_runner import Buffers, PassRunner, Where
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
-from .reflective import PACKED, ReflectiveMaps, draw_reflective
+from .reflective import ReflectiveMaps, draw_reflective
 from .senders import senders
 from .shadows import ShadowSettings, draw_shadows
 from .state import Asked, FrameContext, SurfaceState
@@ -63,7 +65,7 @@ class Lab:
         self.size = check_size(size)
         self.watch = watch
         self._programs, self._pool, self._geometry = Programs(), Pool(), Geometry()
-        self._environments, self._depth = EnvironmentMaps(), DepthTargets()
+        self._environments, self._palettes, self._depth = EnvironmentMaps(), Palettes(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], Bindings] | None = None
         self._seen: tuple[tuple[object, ...], View, str | None] | None = None
         self._virtual: dict[str, tuple[tuple[object, ...], VirtualLightMaps]] = {}
@@ -230,7 +232,7 @@ class Lab:
         with self._lending(runner):
             depth = runner.take(view.size, DEPTH)
             with drawn:
-                large = frame.rasterizer.surfaces([view], formats=surface_formats(frame, asked), depth=depth)
+                large = self._surfaces(frame, asked, depth)
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
             hiding = occluders(frame, asked, large)
@@ -240,6 +242,14 @@ class Lab:
             refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")
         lent, runner.lent = runner.lent, []
         return lend(state, self._pool, lent)
+
+    def _surfaces(self, frame: FrameContext, asked: Asked, depth: moderngl.Texture) -> Buffers:
+        """The surface buffers at full size. Where a palette is enough, `palette` stands in the place of `albedo`."""
+        formats, palette = surface_formats(frame, asked), {}
+        if palettes.is_enough(frame) and not self._programs.generation:  # an edited shader may read more
+            del formats["albedo"]
+            palette = {"palette": self._palettes.of(frame.scene)}
+        return frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth) | palette
 
     def _frame(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
         """A frame from kept surfaces. Its light, that of the rasterizer's scene, is computed when it is first read."""
@@ -267,6 +277,7 @@ class Lab:
             "triangles": scene.triangles,
         }
         shown = {**state.large, **state.estimate}
+        shown.pop("palette", None)  # `albedo` waits
         if not scene.is_smooth:
             del shown["facetNormal"]  # it is viewNormal
         result = Frame(
@@ -287,10 +298,13 @@ class Lab:
     ) -> list[Later]:
         """The light: the picture alone, if a single pass draws it, and all buffers."""
         module = state.frame.module
-        names = [*lighting.names(module), *reflective]
+        waits = ["albedo"] if "albedo" not in state.large else []
+        names = [*lighting.names(module), *reflective, *waits]
         later = [Later(names, partial(self._lit, state, lights, display))]
         if lighting.in_one_pass(module):
             later.insert(0, Later(["image"], partial(self._picture, state, lights, display)))
+        if waits:
+            later.insert(0, Later(waits, partial(self._albedo, state)))
         return later
 
     def _lights(self, state: SurfaceState) -> Lights:
@@ -332,6 +346,16 @@ class Lab:
         lend(result, self._pool, runner.lent)
         return buffers, runner.timer.result()
 
+    def _albedo(self, state: SurfaceState, result: Frame) -> tuple[Buffers, dict[str, float]]:
+        """`albedo` of a frame with a palette, and the milliseconds of its pass."""
+        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
+        runner = rasterizer.runner
+        with self._lending(runner):
+            buffers = palettes.albedo(state.under(rasterizer))
+            refuse_exhaustion("the albedo of {}x{} pixels".format(*state.frame.view.size))
+        lend(result, self._pool, runner.lent)
+        return buffers, runner.timer.result()
+
     def _lit(
         self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
     ) -> tuple[Buffers, dict[str, float]]:
@@ -349,6 +373,8 @@ class Lab:
                 buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, buffers, gathered, view)}
             if lights.reflective:
                 buffers |= lights.reflective.buffers
+            if "albedo" not in state.large:
+                buffers |= palettes.albedo(state)
             sky = self._environments.of(lights.sky)
             buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
             result.lit = Lit(lights, sending)
@@ -377,23 +403,11 @@ class Lab:
         return self._shadows[1]
 
 
-def all_asked(frame: FrameContext) -> Asked:
-    """All that the passes of the frame's module, and its occluder kind, read."""
-    declared, passes = frame.runner.programs.declared, frame.module.all_passes()
-    names = {step.reads.get(name, name) for step in passes for name in declared(step.shader, step.includes).samplers}
-    asks_for_occluders = any("occluders.glsl" in declared(step.shader, step.includes).includes for step in passes)
-    if asks_for_occluders:
-        for text in frame.occluders.bindings().includes.values():
-            names |= declared(text).samplers
-    lights = [step.samples for step in frame.module.lighting() if isinstance(step, VirtualLights)]
-    names = names.union(*lights)
-    return Asked(frozenset(names), asks_for_occluders, bool(names & {*REFLECTIVE, PACKED}))
-
-
 def surface_formats(frame: FrameContext, asked: Asked) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
     names = asked.buffers - {"facetNormal"}  # drawn if the scene needs it
     names |= {"geometricNormal"} if frame.scene.bends_normals else set()
+    names |= {"emission"} if frame.scene.emits else set()
     return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
 
 

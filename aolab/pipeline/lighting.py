@@ -22,6 +22,7 @@ from .pass_runner import Buffers, PassRunner
 from .reflective import ReflectiveMaps
 from .shadows import ShadowMaps
 from .state import SurfaceState
+from .surfaces import as_bindings
 from .virtual_lights import VirtualLightMaps, irradiance
 
 ToneMap = Literal["filmic", "linear"]
@@ -143,10 +144,10 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
         if isinstance(step, Estimate):
             lit |= estimate(state.at_scale(step.scale), step, given)
         elif isinstance(step, VirtualLights):
-            known = [Bindings("the surfaces", state.large), frame.parameters]
+            known = [as_bindings(state.large), frame.parameters]
             lit |= irradiance(state, step, lights.virtual[step.name], known)
         else:
-            known = [Bindings("the surfaces", state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
+            known = [as_bindings(state.large), frame.parameters, frame.samples(frame.seeds[0]), *given]
             lit |= steps(frame, [step], [*known, *_included(state, step)])
     return lit
 
@@ -176,18 +177,18 @@ def in_one_pass(module: Module) -> bool:
 
 def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display) -> Buffers:
     """`image` of a module for which `in_one_pass` is true: one pass over surfaces, one over the background."""
-    frame, surfaces = state.frame, state.large
+    frame = state.frame
     terms = [step for step in frame.module.lighting() if isinstance(step, Pass)]
     shown = _shown(environment, frame.view, display)
     given = [
-        Bindings("the surfaces", {"emission": surfaces["albedo"], **surfaces}),  # samplers must be bound
+        as_bindings(state.large),
         Bindings("the estimate", state.estimate),
         frame.parameters,
         *lights.seen_from(frame.view),
         *(Bindings(f"the pass '{one.name}'", constants=one.constants, includes=one.includes) for one in terms),
         *shown,
     ]
-    has = {"has_emission": "emission" in surfaces}
+    has = {"has_emission": "emission" in state.large}
     includes = {} if any(one.name == "indirect" for one in terms) else {"indirect.glsl": "lighting/no_indirect.glsl"}
     runner, size = frame.runner, frame.view.size
     made = runner.run(replace(_IMAGE, constants=has, includes=includes), given, size, where=state.where)

@@ -14,6 +14,7 @@ from .estimate import steps
 from .lighting import Lights
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
+from .surfaces import as_bindings
 
 
 def _sender(emits: bool) -> Pass:
@@ -28,7 +29,7 @@ def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers,
     runner, view = frame.runner, frame.view
     once: Buffers = {}
     if occluders.hidden:
-        known = [Bindings("the surfaces", state.large), frame.parameters, *lights.seen_from(view)]
+        known = [as_bindings(state.large), frame.parameters, *lights.seen_from(view)]
         once = steps(frame, frame.module.estimate().once, known)
     given = Bindings("the passes before the samples", once)
     sent = {hidden.sender: _hidden_sender(frame, hidden, lights, given) for hidden in occluders.hidden}
@@ -51,7 +52,7 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
     targets = [runner.targets(step, size) for step in passes]
     for view in hidden.views:
         known = [
-            Bindings("the surfaces", surfaces),
+            as_bindings(surfaces),
             Bindings("the view", uniforms=view.uniforms, constants=view.constants),
             hidden.occluders,
             given,

@@ -12,7 +12,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from .pass_runner import Buffers, PassRunner, Where
 from .rasterizer import Rasterizer
-from .surfaces import shrink
+from .surfaces import as_bindings, shrink
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,7 +108,7 @@ class SurfaceState:
     @property
     def known(self) -> Sequence[Bindings]:
         """The buffers at full size, for passes over the whole picture."""
-        return Bindings("the surfaces", self.large), Bindings("the estimate", self.estimate)
+        return as_bindings(self.large), Bindings("the estimate", self.estimate)
 
     def at_scale(self, scale: float | None) -> "SurfaceState":
         """The same, with small surfaces of another scale; None is the module's own."""

@@ -44,6 +44,11 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
     )
 
 
+def as_bindings(buffers: Buffers) -> Bindings:
+    """The surface buffers, for the passes that read them; see glsl/lib/surface.glsl."""
+    return Bindings("the surfaces", buffers, constants={"has_palette": "palette" in buffers})
+
+
 def facing(surfaces: Buffers, normals: str) -> Buffers:
     """The surfaces with the vertices' own normals as `viewNormal`, where `normals` is geometric and they differ."""
     if normals == "geometric" and "geometricNormal" in surfaces:

@@ -138,6 +138,11 @@ class Scene:
         return np.array([bounds[:, 0].min(axis=0), bounds[:, 1].max(axis=0)])
 
     @cached_property
+    def meshes(self) -> tuple[Mesh, ...]:
+        """The meshes of all instances, each once; a mesh's place is its number in shaders."""
+        return tuple(dict.fromkeys(instance.mesh for instance in self.instances))
+
+    @cached_property
     def instance_bounds(self) -> np.ndarray:
         """(instances, 2, 3) float64: the bounds of each."""
         return np.array([instance.bounds for instance in self.instances])
@@ -240,7 +245,7 @@ class Scene:
     @cached_property
     def is_smooth(self) -> bool:
         """Whether the shading normals of some surface are not those of its triangles."""
-        return self.bends_normals or any(mesh.is_smooth for mesh in {instance.mesh for instance in self.instances})
+        return self.bends_normals or any(mesh.is_smooth for mesh in self.meshes)
 
     @cached_property
     def feature_distance(self) -> float | None:

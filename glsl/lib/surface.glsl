@@ -4,9 +4,12 @@
 
 #include "lib/space.glsl"
 
+const bool has_palette;   // each mesh has one albedo, and the palette stands for the buffer
+
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
+uniform sampler2D palette;    // albedos by the number of the mesh
 uniform vec4 ray_from_pixel;
 uniform vec2 texel_size;
 uniform mat4 world_from_view;
@@ -22,8 +25,9 @@ struct Surface {
 bool surfaceHere(out Surface surface) {
     vec2 uv = gl_FragCoord.xy * texel_size;
     float surfaceZ = texture(viewZ, uv).r;
-    surface = Surface(ivec2(gl_FragCoord.xy), viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel),
-                      texture(viewNormal, uv).xyz, texture(albedo, uv).rgb);
+    vec4 normal = texture(viewNormal, uv);   // w: the number of the mesh
+    vec3 reflected = (has_palette ? texelFetch(palette, ivec2(normal.w, 0), 0) : texture(albedo, uv)).rgb;
+    surface = Surface(ivec2(gl_FragCoord.xy), viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), normal.xyz, reflected);
     return !isBackground(surfaceZ);
 }
 

@@ -1,6 +1,6 @@
 // The G-buffer: the surfaces that the camera sees, before any light.
 // Outputs: surfaceViewZ   view-space z of the surface, negative (R32F; the background is cleared to -infinity)
-//          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle (RGBA16F, w 0)
+//          surfaceNormal  unit view-space normal, facing the viewer's side of the triangle; w: the number of the mesh (RGBA16F)
 //          surfaceAlbedo  linear diffuse albedo; a is 1 where a surface is, and 0 in the background (RGBA16F)
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
@@ -113,7 +113,7 @@ void main() {
     surfaceViewZ = viewPos.z;
     float side = !peel && dot(viewNormal, faceNormal) < 0.0 ? -1.0 : 1.0;
     vec3 normal = normalize(viewNormal);
-    surfaceNormal = vec4(side * normal, 0.0);
+    surfaceNormal = vec4(side * normal, mesh_number);
     if (with_geometricNormal) surfaceGeometricNormal = surfaceNormal;
     if (bent_normals) {
         vec3 byU, byV;

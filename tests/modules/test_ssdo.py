@@ -528,7 +528,7 @@ def test_screen_shadows_come_on_top_of_shadow_maps(lab):
 
 # --- what is switched off costs nothing
 
-PLAIN = {"g_buffer", "ssdo", "filter open_light to all_light", "direct", "ambient", "compose"}
+PLAIN = {"albedo", "g_buffer", "ssdo", "filter open_light to all_light", "direct", "ambient", "compose"}
 
 
 def test_nothing_is_paid_for_what_is_switched_off(lab, boxes):
