@@ -52,6 +52,11 @@ def kinds_of(scene: Scene) -> dict[str, Constant]:
     }
 
 
+def stored(color: tuple[float, float, float]) -> tuple[float, ...]:
+    """The colour in the half floats of the G-buffer, so that no driver rounds it in its own way."""
+    return tuple(np.array(color, np.float16).tolist())
+
+
 @dataclass
 class _Group:
     """Instances of a mesh that are drawn together: the mirrored ones, or the others."""
@@ -171,7 +176,7 @@ class Geometry:
     def _use_material(self, mesh: Mesh, number: int, program: Program, scene: Scene) -> None:
         material = mesh.material
         values = MESH_UNIFORMS | {
-            "base_color": (*material.base_color, material.alpha),
+            "base_color": (*stored(material.base_color), material.alpha),
             "alpha_cutoff": -1.0 if material.alpha_cutoff is None else material.alpha_cutoff,
             "blended": material.blend,
             "mesh_number": float(number),

@@ -12,6 +12,7 @@ from ..modules.passes import TERMS, Pass
 from ..scene.scene import Scene
 from .asked import sampled
 from .doubts import is_own
+from .geometry import stored
 from .lighting import in_one_pass
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
@@ -19,7 +20,8 @@ from .surfaces import as_bindings
 
 MOST = 2048  # meshes: half floats hold the whole numbers up to here
 
-_ALBEDO = Pass("albedo", "pipeline/albedo.frag", {"albedo": SURFACES["albedo"].format}, background={"albedo": 0.0})
+_FORMAT = SURFACES["albedo"].format
+_ALBEDO = Pass("albedo", "pipeline/albedo.frag", {"albedo": _FORMAT}, background={"albedo": 0.0})
 
 
 def is_enough(frame: FrameContext) -> bool:
@@ -49,9 +51,9 @@ class Palettes:
         self._textures: weakref.WeakKeyDictionary[Scene, moderngl.Texture] = weakref.WeakKeyDictionary()
 
     def of(self, scene: Scene) -> moderngl.Texture:
-        """The albedos of the scene's meshes in a row, by number, RGBA32F."""
+        """The albedos of the scene's meshes in a row, by number; the same as those that the G-buffer holds."""
         if scene not in self._textures:
-            colors = np.ones((len(scene.meshes), 4), np.float32)
-            colors[:, :3] = [mesh.material.base_color for mesh in scene.meshes]
-            self._textures[scene] = make((len(colors), 1), "RGBA32F", colors.tobytes())
+            colors = np.ones((len(scene.meshes), 4), np.float16)
+            colors[:, :3] = [stored(mesh.material.base_color) for mesh in scene.meshes]
+            self._textures[scene] = make((len(colors), 1), _FORMAT, colors.tobytes())
         return self._textures[scene]

@@ -43,7 +43,7 @@ def test_the_light_is_that_of_a_drawn_albedo(lab, drawn, monkeypatch, module):
     np.testing.assert_array_equal(frame["albedo"], other["albedo"])
     assert len(np.unique(frame["albedo"][frame.mask], axis=0)) == len(COLORS)
     for name in ("direct", "ambient", "radiance"):
-        np.testing.assert_allclose(frame[name], other[name], rtol=2e-3, atol=1e-6, err_msg=name)  # half floats
+        np.testing.assert_allclose(frame[name], other[name], rtol=1e-5, atol=1e-6, err_msg=name)
 
 
 def test_the_albedo_is_drawn_for_passes_that_read_it(lab):
