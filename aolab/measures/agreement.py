@@ -1,13 +1,17 @@
 """Whether two results may be compared at all: the same view, the same question, the same light."""
 
 import warnings
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
 from ..errors import Notice, ParameterError
 from ..pipeline.frame import Frame
+from ..scene.mesh import Mesh
+from ..scene.scene import Scene
+from ..truth.cache import look_parts, shape_parts
 
 _OCCLUSION = ("radius", "falloff", "spread")
 _OPEN = ("visibility", "bent_normal", "ambient", "sh", *(f"sh{i}" for i in range(4)))
@@ -31,7 +35,7 @@ def check(a: object, b: object, names: tuple[str, str], buffers: Iterable[str]) 
         return
     _check_cameras(a, b, names)
     buffers = {name.removesuffix("_raw") for name in buffers}
-    told = [*_questions(a, b, names, buffers), *_scenes(a, b, names), *_lights(a, b, names, buffers)]
+    told = [*_questions(a, b, names, buffers), *_scenes(a, b, names, buffers), *_lights(a, b, names, buffers)]
     for text in told:
         warnings.warn(f"{text}; the difference counts as error", Notice, stacklevel=3)
 
@@ -63,11 +67,32 @@ def _questions(a: Frame, b: Frame, names: tuple[str, str], buffers: set[str]) ->
     ]
 
 
-def _scenes(a: Frame, b: Frame, names: tuple[str, str]) -> list[str]:
+def _scenes(a: Frame, b: Frame, names: tuple[str, str], buffers: set[str]) -> list[str]:
     ours, theirs = a.info.get("scene"), b.info.get("scene")
-    if ours and theirs and ours != theirs:
-        return [f"the scenes differ: {names[0]} shows {ours}, {names[1]} shows {theirs}"]
+    sources = ours and theirs and ours != theirs
+    told = f"the scenes differ: {names[0]} shows {ours}, {names[1]} shows {theirs}"
+    if not a.scene or not b.scene:
+        return [told] if sources else []
+    if not _same_meshes(a.scene, b.scene, shape_parts):
+        return [told if sources else f"the surfaces of {names[0]} and {names[1]} differ"]
+    if buffers & set(_LIT) and not _same_meshes(a.scene, b.scene, look_parts):
+        return [f"the materials of {names[0]} and {names[1]} differ"]
     return []
+
+
+def _same_meshes(a: Scene, b: Scene, parts: Callable[[Mesh], Iterable[Any]]) -> bool:
+    """Whether two scenes have the same instances, as far as the `parts` of their meshes."""
+    if a is b:
+        return True
+    if len(a.instances) != len(b.instances):
+        return False
+    for one, other in zip(a.instances, b.instances, strict=True):
+        if not np.array_equal(one.world_from_local, other.world_from_local):
+            return False
+        pairs = () if one.mesh is other.mesh else zip_longest(parts(one.mesh), parts(other.mesh))
+        if not all(np.array_equal(part, counterpart) for part, counterpart in pairs):
+            return False
+    return True
 
 
 def _lights(a: Frame, b: Frame, names: tuple[str, str], buffers: set[str]) -> list[str]:

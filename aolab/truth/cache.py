@@ -18,6 +18,7 @@ import platformdirs
 from .. import paths
 from ..errors import FileError, Notice
 from ..output import replacing
+from ..scene.mesh import Mesh
 from ..scene.scene import Scene
 
 BUDGET = 2_000_000_000  # bytes; the entries used longest ago go first
@@ -108,25 +109,41 @@ def _trim(root: Path) -> None:
                 file.unlink()
 
 
+def shape_parts(mesh: Mesh) -> Iterator[Any]:
+    """The content of a mesh that decides where its surface is and how it is curved, as bytes and arrays."""
+    yield from _arrays(mesh, ("vertices", "faces", "normals"))
+
+
+def look_parts(mesh: Mesh) -> Iterator[Any]:
+    """The rest of a mesh's content: its material, and the arrays that place the material on it."""
+    yield from _arrays(mesh, ("uv", "colors", "tangents"))
+    material = mesh.material
+    yield repr(
+        replace(material, texture=None, emission_texture=None, normal_texture=None, height=None, name="")
+    ).encode()
+    if material.height is not None:
+        yield repr((material.height.heights.shape, material.height.wrap)).encode()
+        yield material.height.heights
+    for texture in (material.texture, material.emission_texture, material.normal_texture):
+        if texture is not None:
+            yield repr((texture.pixels.shape, texture.wrap, texture.nearest)).encode()
+            yield texture.pixels
+
+
+def _arrays(mesh: Mesh, names: Iterable[str]) -> Iterator[Any]:
+    for name in names:
+        array = getattr(mesh, name)
+        yield f"{name} {None if array is None else array.shape}".encode()
+        if array is not None:
+            yield array
+
+
 def _scene_parts(scene: Scene) -> Iterator[Any]:
     meshes = {instance.mesh: None for instance in scene.instances}
     numbers = {mesh: i for i, mesh in enumerate(meshes)}
     for mesh in meshes:
-        for name in ("vertices", "faces", "normals", "uv", "colors", "tangents"):
-            array = getattr(mesh, name)
-            yield f"{name} {None if array is None else array.shape}".encode()
-            if array is not None:
-                yield array
-        material = mesh.material
-        plain = replace(material, texture=None, emission_texture=None, normal_texture=None, height=None)
-        yield repr(plain).encode()
-        if material.height is not None:
-            yield repr((material.height.heights.shape, material.height.wrap)).encode()
-            yield material.height.heights
-        for texture in (material.texture, material.emission_texture, material.normal_texture):
-            if texture is not None:
-                yield repr((texture.pixels.shape, texture.wrap, texture.nearest)).encode()
-                yield texture.pixels
+        yield from shape_parts(mesh)
+        yield from look_parts(mesh)
     for instance in scene.instances:
         yield repr(numbers[instance.mesh]).encode()
         yield instance.world_from_local

@@ -90,6 +90,43 @@ def test_another_scene_is_told(lab):
         compare(a, b, "visibility", flip=False)
 
 
+def edited(scene, **changes):
+    """The scene with another last mesh."""
+    *others, last = scene.instances
+    mesh = replace(last.mesh, **changes)
+    return scene.replace(instances=(*others, replace(last, mesh=mesh)))
+
+
+def test_a_surface_that_was_moved_or_removed_is_told(frame, boxes):
+    *others, last = boxes.instances
+    aside = last.world_from_local.copy()
+    aside[0, 3] += 0.1
+    moved = boxes.replace(instances=(*others, replace(last, world_from_local=aside)))
+    vertices = last.mesh.vertices.copy()
+    vertices[0] += 0.01
+    for other in (moved, boxes.replace(instances=tuple(others)), edited(boxes, vertices=vertices)):
+        with pytest.warns(Notice, match="the surfaces of ssao and reference differ"):
+            compare(frame, truth(other, like=frame, camera=frame.camera), "visibility", flip=False)
+
+
+def test_another_material_is_told_where_light_is_compared(frame, boxes):
+    material = replace(boxes.instances[-1].mesh.material, base_color=(0.9, 0.1, 0.1))
+    red = truth(edited(boxes, material=material), ("visibility", "ambient"), like=frame)
+    with pytest.warns(Notice, match="the materials of ssao and reference differ"):
+        compare(frame, red, "ambient", flip=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        compare(frame, red, "visibility", flip=False)
+
+
+def test_equal_surfaces_pass_whatever_their_names(frame, boxes):
+    material = replace(boxes.instances[-1].mesh.material, name="renamed")
+    again = edited(boxes, vertices=boxes.instances[-1].mesh.vertices.copy(), material=material)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        compare(frame, truth(again, like=frame), "visibility", flip=False)
+
+
 def noisy_pair(noise):
     """A result that is the truth, and a truth of that standard error."""
     random = np.random.default_rng(1)
