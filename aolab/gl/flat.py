@@ -45,13 +45,11 @@ def flattened(
         if used + uniform.vectors <= room:
             locations[name] = used
             used += uniform.vectors
-    lines, seen = [], set[str]()
+    lines = []
     for line in fragment.text.splitlines():
         match = _UNIFORM.match(line)
         if match and match[3] in locations and match[1] == uniforms[match[3]].text:
-            varying = f"layout(location = {locations[match[3]]}) flat in {match[1]};"
-            line = line.replace(match[0], "" if match[3] in seen else varying, 1)
-            seen.add(match[3])
+            line = line.replace(match[0], f"layout(location = {locations[match[3]]}) flat in {match[1]};", 1)
         lines.append(line)
     moved = [(name, location, uniforms[name]) for name, location in locations.items()]
     return _with_outs(vertex, moved), _with_extension(replace(fragment, text="\n".join(lines) + "\n"))

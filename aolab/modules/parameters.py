@@ -88,13 +88,18 @@ class Parameters(BaseModel, metaclass=_Declared):
 
     @classmethod
     def read(cls, values: Mapping[str, Any]) -> dict[str, Any]:
-        """`values` with each text replaced by the JSON value that it spells: a number, true or false."""
+        """`values` with each text replaced by the JSON value that it spells: a number, true or false.
+
+        The brackets of a tuple may be left out: 0.1,0.2,0.3.
+        """
 
         def value(name: str, given: Any) -> Any:
             owner = cls.stated().get(name)
-            if isinstance(given, str) and owner is not None and owner.model_fields[name].annotation is not str:
+            annotation = str if owner is None else owner.model_fields[name].annotation
+            if isinstance(given, str) and annotation is not str:
+                listed = get_origin(annotation) is tuple and not given.startswith("[")
                 with suppress(ValueError, RecursionError):  # no JSON; too many digits; brackets within brackets
-                    return json.loads(given)
+                    return json.loads(f"[{given}]" if listed else given)
             return given
 
         return {name: value(name, given) for name, given in values.items()}
@@ -130,6 +135,12 @@ class Parameters(BaseModel, metaclass=_Declared):
         """The values that a shader may take, as uniforms or as constants: words never reach a shader."""
         own = {name: getattr(self, name) for name in type(self).model_fields}
         return {name: value for name, value in own.items() if isinstance(value, (bool, int, float))}
+
+    def vectors(self) -> dict[str, tuple[float, ...]]:
+        """The values that a shader may take as a uniform vec2, vec3 or vec4: tuples of as many numbers."""
+        own = {name: getattr(self, name) for name in type(self).model_fields}
+        tuples = {name: value for name, value in own.items() if isinstance(value, tuple) and 2 <= len(value) <= 4}
+        return {name: value for name, value in tuples.items() if all(isinstance(one, (int, float)) for one in value)}
 
     def replace(self, **changes: object) -> Self:
         """The same with some values changed, validated again."""

@@ -56,10 +56,10 @@ class FrameContext:
 
     @property
     def parameters(self) -> Bindings:
-        """The module's numbers, as uniforms and as constants, and all that its measure gives."""
+        """The module's numbers, as uniforms and as constants, its vectors, and all that its measure gives."""
         numbers, owner = self.module.numbers(), f"the parameters of {self.module.label()}"
         words = {name: value for name, value in self.module.values().items() if isinstance(value, str)}
-        own = Bindings(owner, uniforms=numbers, constants=numbers, words=words)
+        own = Bindings(owner, uniforms={**numbers, **self.module.vectors()}, constants=numbers, words=words)
         if "measure" not in self.module.choices:
             return own
         measure = self.module.chosen("measure")

@@ -79,9 +79,9 @@ def test_the_driver_finds_the_uniforms_that_are_read(boxes, monkeypatch):
     assert "flat in vec4 view_region;" in text
 
 
-def test_a_second_declaration_of_a_uniform_is_dropped():
-    _, fragment = texts("uniform vec2 a;\nuniform vec2 a;\n")
-    assert fragment.count("vec2 a;") == 1
+def test_both_branches_of_a_condition_declare_the_varying():
+    _, fragment = texts("#ifdef A\nuniform vec2 a;\n#else\nuniform vec2 a;\n#endif\n")
+    assert fragment.count("flat in vec2 a;") == 2
 
 
 def test_lines_keep_their_places():
@@ -127,3 +127,14 @@ def test_a_report_is_about_the_shader_as_it_is_written(lab, boxes):
     with pytest.raises(ShaderError, match="<Wrong>:3: ") as told:
         lab.render(boxes, Wrong(), size=(16, 16))
     assert "flat" not in str(told.value)
+
+
+def test_a_uniform_that_is_declared_twice_is_an_error_as_on_hardware(lab, boxes):
+    class Twice(aolab.Module):
+        shader = """uniform vec2 texel_size;
+uniform vec2 texel_size;
+out float visibility;
+void main() { visibility = texel_size.x; }"""
+
+    with pytest.raises(ShaderError, match=r"<Twice>:2: .*texel_size"):
+        lab.render(boxes, Twice(), size=(16, 16))

@@ -257,3 +257,26 @@ def test_impossible_outputs_are_doubted(value, doubt):
 
     with pytest.warns(aolab.Notice, match=f"Doubtful: .*{doubt}" if "visibility" in doubt else doubt):
         aolab.render("boxes", Doubtful, size=(32, 18), filter="none")
+
+
+class Tinted(Module):
+    """Tuples of numbers, one for each number of a colour."""
+
+    tint: tuple[float, float, float] = parameter((0.1, 0.3, 0.5), "Weights of red, green and blue.")
+    offset: tuple[float, float] = parameter((0.0, 0.0), "Two numbers.")
+    shader = """
+uniform vec3 tint;
+uniform vec2 offset;
+uniform sampler2D albedo;
+out float visibility;
+void main() { visibility = dot(tint, texelFetch(albedo, ivec2(gl_FragCoord.xy), 0).rgb) + offset.y; }
+"""
+
+
+def test_a_tuple_of_numbers_is_a_vector_in_the_shader(lab, boxes):
+    frame = lab.render(boxes, Tinted(offset=(5.0, 0.0)), size=(32, 24), filter="none")
+    expected = frame["albedo"] @ np.array((0.1, 0.3, 0.5))
+    np.testing.assert_allclose(frame["visibility"][frame.mask], expected[frame.mask], atol=2e-3)
+    with pytest.raises(ParameterError, match="tint"):
+        Tinted(tint=(1.0, 2.0))  # type: ignore[arg-type]
+    assert Tinted(**Tinted.read({"tint": "1,2,3", "offset": "[4, 5]"})) == Tinted(tint=(1, 2, 3), offset=(4, 5))
