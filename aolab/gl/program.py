@@ -173,7 +173,11 @@ class Programs:
         request = Request(vertex, fragment, constants or {}, aliases or {}, *others)
         if request.sources in self._declared and (key := self._key(request)) in self._programs:
             return self._programs[key]
-        return self._keep(_compile(replace(request, offered=offered())))
+        try:
+            return self._keep(_compile(replace(request, offered=offered())))
+        except ShaderError:
+            self._in_text.clear()  # the mended file may have other includes
+            raise
 
     def declared(self, shader: str | Path, aliases: Mapping[str, str] = MappingProxyType({})) -> Declared:
         """The includes and samplers of a shader, before anything is compiled."""
@@ -185,6 +189,15 @@ class Programs:
     def changed(self) -> bool:
         """Whether a file of a program was written since the program was compiled."""
         return any(program.changed() for program in self._programs.values())
+
+    def forget_changed(self) -> None:
+        """Drop the programs whose files were written since; each is compiled again when it is asked for."""
+        stale = [key for key, program in self._programs.items() if program.changed()]
+        for key in stale:
+            del self._programs[key]
+        if stale:
+            self._in_text.clear()
+            self.generation += 1
 
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
         """Compile again what changed (or everything); returns names. On `ShaderError` the last good programs stay.

@@ -56,8 +56,9 @@ MOST_ACCUMULATED = 16384  # frames: the noise is 1/128 of that of one frame
 class Lab:
     """Renders scenes with modules. One lab for a session is enough; `aolab.render` keeps one of its own.
 
-    `size` is (width, height) in pixels. With `watch`, shader files that changed are compiled before each frame. A
-    file that does not compile raises once; then the last good program is used until the next edit.
+    `size` is (width, height) in pixels. Edits of the shader files of your own modules are seen by the next frame. With
+    `watch`, all shader files that changed are compiled before each frame; a file that does not compile raises once,
+    and the last good program is used until the next edit.
     """
 
     @handed
@@ -156,7 +157,7 @@ class Lab:
             frame.info["exposure"] if exposure is None else exposure,
             frame.info["tone_map"] if tone_map is None else tone_map,
         )
-        self._begin()
+        self._begin(frame.kept.frame.module)
         lit = self._frame(frame.kept, self._rasterizer(scene, NO_LAST), display)
         lit.notes = list(frame.notes)
         lit.frame_ms = (perf_counter() - start) * 1e3
@@ -173,7 +174,7 @@ class Lab:
         display: Display,
         last: Frame | None,
     ) -> Frame:
-        self._begin()
+        self._begin(module)
         camera = scene.camera if camera is None else camera
         if not isinstance(camera, Camera):
             raise ParameterError(f"camera = {camera!r:.80} is not an aolab.Camera")
@@ -208,17 +209,24 @@ class Lab:
         """The means to draw one frame of the scene."""
         return Rasterizer(PassRunner(self._programs, self._pool), self._geometry, self._depth, scene, last)
 
-    def _begin(self) -> None:
+    def _begin(self, module: Module) -> None:
         context.collect()
         if self.watch:
             self._reload(tell_again=False)
+        elif is_own(module) and self._programs.changed():  # its file may be open in an editor
+            self._finish_waiting()
+            self._programs.forget_changed()
 
     def _reload(self, **how: bool) -> list[str]:
-        """Compile the files that changed; frames that wait for their picture get it from the programs before."""
+        """Compile the files that changed."""
         if self._programs.changed():
-            for frame in [*self._waiting]:
-                frame.complete("image")
+            self._finish_waiting()
         return self._programs.reload(only_changed=True, **how)
+
+    def _finish_waiting(self) -> None:
+        """Frames that wait for their picture get it from the programs before a change."""
+        for frame in [*self._waiting]:
+            frame.complete("image")
 
     def _make_room(self, sizes: set[Size]) -> None:
         """After a change of resolution, free the textures of the old one that no frame holds."""

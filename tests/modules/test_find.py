@@ -89,10 +89,11 @@ def test_a_name_of_a_built_in_shader_stays_one(tmp_path, monkeypatch, lab, boxes
     assert np.nanmax(lab.render(boxes, Own)["visibility"]) == 0
 
 
-def test_an_edit_of_a_file_is_seen(boxes, folder):
+@pytest.mark.parametrize("watch", [False, True])
+def test_an_edit_of_a_file_is_seen(boxes, folder, watch):
     """Of the shader, of a file that it includes, and of the Python file."""
     name = f"{folder}/student.py"
-    lab = aolab.Lab((16, 9), watch=True)
+    lab = aolab.Lab((16, 9), watch=watch)
 
     def level(path: Path, text: str) -> float:
         time.sleep(0.01)  # file systems have coarse clocks
@@ -104,6 +105,37 @@ def test_an_edit_of_a_file_is_seen(boxes, folder):
     assert level(folder / "mine.frag", SHADER.replace("half_of(level)", "level")) == pytest.approx(0.5, abs=1e-3)
     edited = STUDENT.format(shader="'mine.frag'").replace("0.5", "1.0")
     assert level(folder / "student.py", edited) == pytest.approx(1, abs=1e-3)
+
+
+def test_an_edit_that_does_not_compile_is_told_in_each_frame_until_it_is_mended(boxes, folder):
+    """As cells of a notebook are run: the old result must not stand for the edited shader."""
+
+    class Mine(aolab.Module):
+        shader = folder / "mine.frag"
+        level: float = 0.5
+
+    def written(text: str) -> None:
+        time.sleep(0.01)  # file systems have coarse clocks
+        (folder / "mine.frag").write_text(text)
+
+    lab = aolab.Lab((16, 9))
+    assert np.nanmax(lab.render(boxes, Mine)["visibility"]) == pytest.approx(0.25, abs=1e-3)
+    written(SHADER.replace("half_of(level)", "half_of(levl)"))
+    for _ in range(2):
+        with pytest.raises(aolab.ShaderError, match="levl"):
+            lab.render(boxes, Mine)
+    assert np.nanmax(lab.render(boxes, "none")["visibility"]) == 1  # other modules go on
+    (folder / "mine.frag").unlink()
+    with pytest.raises(aolab.ShaderError, match=r"no file .*mine.frag"):
+        lab.render(boxes, Mine)
+    written(SHADER.replace("half_of(level)", "half_of(level) * share").replace("void", "const float share;\nvoid"))
+    with pytest.raises(aolab.ShaderError, match="share"):
+        lab.render(boxes, Mine)
+
+    class Mine(Mine):  # the cell of the class is run again, with the new parameter
+        share: float = 0.5
+
+    assert np.nanmax(lab.render(boxes, Mine)["visibility"]) == pytest.approx(0.125, abs=1e-3)
 
 
 def test_a_class_of_a_file_stays_the_same_while_the_file_does(folder):
