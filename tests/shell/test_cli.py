@@ -122,7 +122,7 @@ def test_a_slip_gets_the_line_that_was_meant(aolab, case):
     assert done.err.count("\n") == 1
 
 
-@pytest.mark.parametrize("line", ["render boxes --frob", "render boxes cornell", "frob", "render boxes --size 9"])
+@pytest.mark.parametrize("line", ["render boxes --frob", "render boxes quartz", "frob", "render boxes --size 9"])
 def test_another_mistake_keeps_its_message(aolab, line):
     assert re.search(
         "No such option|extra argument|no command 'frob'; known: |is not WIDTHxHEIGHT", aolab(*line.split()).err
