@@ -78,24 +78,27 @@ class Declared:
 
     includes: frozenset[str]
     samplers: frozenset[str]
+    files: frozenset[Path] = frozenset()  # that hold the text
 
 
 def declared(shader: str | Path, aliases: Mapping[str, str] | None = None) -> Declared:
     """The includes and samplers of a shader; `aliases` as of `assemble`. An include without a file is not followed."""
     includes: set[str] = set()
     samplers: set[str] = set()
+    files: set[Path] = set()
     waiting: list[tuple[str | Path, Path | None]] = [(shader, None)]
     while waiting:
         one, including = waiting.pop()
         path = None if is_text(one) else located(one, including)
         if path is None and not is_text(one):
             continue
+        files |= {path} if path else set()
         text = str(one) if path is None else read_text(path, _shown(path))
         names = {match[1] for line in text.splitlines() if (match := _INCLUDE.match(line)) and match[1]}
         samplers.update(_SAMPLER.findall(_COMMENT.sub("", text)))
         waiting += [((aliases or {}).get(name, name), path) for name in names - includes]
         includes |= names
-    return Declared(frozenset(includes), frozenset(samplers))
+    return Declared(frozenset(includes), frozenset(samplers), frozenset(files))
 
 
 def located(name: str | Path, including: Path | None) -> Path | None:

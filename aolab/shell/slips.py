@@ -5,6 +5,12 @@ from itertools import takewhile
 SEPARATORS = {"--size": "x", "--eye": ",", "--target": ",", "--up": ","}  # of an option's numbers
 MODULE = {"compare": "--modules {}", "tune": "tune {}", "modules": "modules {}"}  # others: --module
 PARAMETER = {"compare": '--modules "ssao?{}"', "bench": "aolab render --set {}"}  # others: --set
+WITHOUT = {  # commands without an option for a module
+    "sweep": "the scene, the module and its parameters stand in a file: aolab sweep SPEC.toml (docs/sweeps.md)",
+    "bench": "`aolab bench` measures every module",
+    "bake": "`aolab bake` traces rays, without a module",
+    "reproduce": "a figure has its own scenes and modules; write aolab render boxes --module ssao",
+}
 OPTIONS = {"help": "--help", "version": "--version"}  # words that people write as commands
 WANTED = {  # arguments that are missing
     "SCENE": "which scene? Name one (`aolab scenes` lists them), or a model file",
@@ -79,6 +85,9 @@ def _option(message: str, arguments: list[str]) -> str | None:
             continue
         value = value or (arguments[index + 1] if len(arguments) > index + 1 else "")
         key = option.removeprefix("--").replace("-", "_")
+        absent = ("module", "modules") if arguments[0] in PARAMETER else ("module", "modules", "set", "scene")
+        if key in absent and arguments[0] in WITHOUT:
+            return f"no option {option} here: {WITHOUT[arguments[0]]}"
         if key in ("module", "modules"):
             return f"no option {option} here; write {_module(arguments[0], value or 'NAME')}"
         if key == "set" and arguments[0] in PARAMETER:
@@ -105,10 +114,15 @@ def _extra(message: str, arguments: list[str]) -> str | None:
         written = [name.partition("?") for name in word.split(",")]
         names = [nearest(name, MODULES) for name, _, _ in written]
         if None not in names:
+            if arguments[0] in WITHOUT:
+                return f"unexpected '{word}': {WITHOUT[arguments[0]]}"
             found = ",".join(f"{name}{mark}{rest}" for name, (_, mark, rest) in zip(names, written, strict=True))
             return f"unexpected '{word}': a module is an option; write {_module(arguments[0], found)}"
         if arguments[0] == "bench" and word in scene_names():
             return f"unexpected '{word}': here a scene is an option; write --scene {word}"
+        if word.partition("?")[0] in scene_names():
+            command = "render" if arguments[0] == "scenes" else arguments[0]
+            return f"unexpected '{word}': a command takes one scene; write aolab {command} {word}"
     return None
 
 

@@ -90,6 +90,12 @@ SLIPS = {
     "a module as an argument of compare": ("compare boxes SSAO,ssdo", "write --modules ssao,ssdo"),
     "--module of compare": ("compare boxes --module ssao", "write --modules ssao"),
     "--set of compare": ("compare boxes --set radius=0.5", 'write --modules "ssao?radius=0.5"'),
+    "a module as an argument of sweep": ("sweep boxes ssao", "stand in a file: aolab sweep SPEC.toml"),
+    "--scene of sweep": ("sweep --scene boxes", "stand in a file: aolab sweep SPEC.toml"),
+    "a module as an argument of bench": ("bench ssao", "`aolab bench` measures every module"),
+    "--module of bench": ("bench --module ssao", "`aolab bench` measures every module"),
+    "two scenes": ("compare boxes cornell", "a command takes one scene; write aolab compare cornell"),
+    "a scene as an argument of scenes": ("scenes boxes", "write aolab render boxes"),
     "--scene of render": ("render --scene boxes", "write aolab render boxes"),
     "a parameter as an argument": ("render boxes radius=0.5", "write --set radius=0.5"),
     "a scene as an argument of bench": ("bench boxes", "write --scene boxes"),
@@ -116,7 +122,7 @@ def test_a_slip_gets_the_line_that_was_meant(aolab, case):
     assert done.err.count("\n") == 1
 
 
-@pytest.mark.parametrize("line", ["render boxes --frob", "render boxes cornell", "frob", "render boxes --size 9"])
+@pytest.mark.parametrize("line", ["render boxes --frob", "render boxes quartz", "frob", "render boxes --size 9"])
 def test_another_mistake_keeps_its_message(aolab, line):
     assert re.search(
         "No such option|extra argument|no command 'frob'; known: |is not WIDTHxHEIGHT", aolab(*line.split()).err

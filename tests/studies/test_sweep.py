@@ -16,6 +16,7 @@ import pytest
 import aolab
 from aolab.errors import FileError, Notice, ParameterError
 from aolab.studies.sweep.api import run_plan
+from aolab.studies.sweep.case import Case, Settings, identity
 from aolab.studies.sweep.plan import Draw, Plan, read_spec
 from aolab.studies.sweep.schedule import shard_of
 from aolab.studies.sweep.table import SweepTable
@@ -384,3 +385,22 @@ def test_a_band_is_students_interval_over_the_seeds():
     table = SweepTable.of(records, {"inputs": ["seed", "radius"], "measures": ["rmse"]})
     low, high = np.sort(np.unique(table.lines("radius").axes[0].collections[0].get_paths()[0].vertices[:, 1]))[[0, -1]]
     assert (low, high) == pytest.approx((2 - 2.4841, 2 + 2.4841), abs=1e-3)  # t(0.975, 2) / √3 = 4.3027 / √3
+
+
+def test_an_edit_of_ones_own_shader_or_of_its_include_makes_another_case(tmp_path):
+    (tmp_path / "share.glsl").write_text("const float SHARE = 0.5;\n")
+    shader = tmp_path / "own.frag"
+    shader.write_text('#include "share.glsl"\nout float visibility;\nvoid main() { visibility = SHARE; }\n')
+
+    class Own(aolab.Module):
+        pass
+
+    Own.shader = shader
+    case, settings = Case("boxes", Own, {}, (32, 24)), Settings(measures=())
+    names = [identity(case, settings), identity(case, settings)]
+    (tmp_path / "share.glsl").write_text("const float SHARE = 0.6;\n")
+    names.append(identity(case, settings))
+    shader.write_text(shader.read_text().replace("= SHARE", "= 1.0 - SHARE"))
+    names.append(identity(case, settings))
+    assert names[0] == names[1]
+    assert len(set(names)) == 3

@@ -16,6 +16,7 @@ import numpy as np
 
 from ... import paths
 from ...errors import Error, Notice
+from ...gl.source import declared
 from ...gl.texture import Size
 from ...loading import load
 from ...modules import MODULES, Module, find
@@ -147,11 +148,12 @@ def identity(case: Case, settings: Settings) -> str:
     A case that cannot be resolved, say for a wrong value, is identified by its inputs alone.
     """
     try:
-        module: Any = repr(case_module(case).values())
-        source = inspect.getsource(type(case_module(case))) if module_name(case.module) not in MODULES else ""
+        chosen = case_module(case)
+        module: Any = repr(chosen.values())
+        source = _own_sources(chosen) if module_name(case.module) not in MODULES else []
         scene = _scene_digest(loaded(case.scene))
     except Exception:  # the case itself will raise it, and record it
-        module, source, scene = repr(dict(case.parameters)), "", scene_name(case.scene)
+        module, source, scene = repr(dict(case.parameters)), [], scene_name(case.scene)
     asked = [name if isinstance(name, str) else _source(name) for name in settings.measures]
     parts = {
         "scene": scene,
@@ -165,6 +167,16 @@ def identity(case: Case, settings: Settings) -> str:
         "code": code_digest(),
     }
     return hashlib.sha256(json.dumps(parts, sort_keys=True, default=str).encode()).hexdigest()[:24]
+
+
+def _own_sources(module: Module) -> list[str]:
+    """The sources of a module's classes and shaders that are not the package's: `code_digest` has the others."""
+    kinds = [one for one in type(module).__mro__ if issubclass(one, Module) and not one.__module__.startswith("aolab.")]
+    shaders = [module.shader, *(getattr(step, "shader", "") for step in module.passes())]
+    files = {file for shader in shaders if shader for file in declared(shader).files}
+    own = sorted(file for file in files if not file.is_relative_to(paths.glsl()))
+    texts = [shader for shader in shaders if isinstance(shader, str)]
+    return [*map(_source, kinds), *texts, *(file.read_text(encoding="utf-8-sig") for file in own)]
 
 
 def _source(function: Callable[..., Any]) -> str:
