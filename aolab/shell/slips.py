@@ -12,6 +12,17 @@ WITHOUT = {  # commands without an option for a module
     "reproduce": "a figure has its own scenes and modules; write aolab render boxes --module ssao",
 }
 OPTIONS = {"help": "--help", "version": "--version"}  # words that people write as commands
+PYTHON = (
+    "load",
+    "show",
+    "explain",
+    "explore",
+    "microscope",
+    "glyph",
+    "glyph_picker",
+    "relighting_error",
+    "contact_sheet",
+)
 WANTED = {  # arguments that are missing
     "SCENE": "which scene? Name one (`aolab scenes` lists them), or a model file",
     "MODULE": "which module? Name one (`aolab modules` lists them)",
@@ -33,7 +44,7 @@ def meant(message: str, arguments: list[str]) -> str | None:
 
 
 def _command(word: str) -> str:
-    """`aolab boxes`, `aolab ssao`, `aolab help` and `aolab rendr`."""
+    """`aolab boxes`, `aolab ssao`, `aolab help`, `aolab explain` and `aolab rendr`."""
     from ..errors import nearest, suggestion
     from ..loading import scene_names
     from ..modules import MODULES
@@ -46,6 +57,8 @@ def _command(word: str) -> str:
         return f"no command '{word}': to repeat a picture, write: aolab render --like {word}"
     if name in scene_names() or "." in word:
         return f"no command '{word}': to render a scene, write: aolab render {word}"
+    if word in PYTHON:
+        return f"no command '{word}': it is a function in Python, aolab.{word}(...){suggestion(word, NAMES)}"
     if nearest(word, NAMES) is None:
         if scene := nearest(name, scene_names()):
             return f"no command '{word}': to render a scene, write: aolab render {scene}{word[len(name) :]}"
@@ -118,6 +131,8 @@ def _extra(message: str, arguments: list[str]) -> str | None:
                 return f"unexpected '{word}': {WITHOUT[arguments[0]]}"
             found = ",".join(f"{name}{mark}{rest}" for name, (_, mark, rest) in zip(names, written, strict=True))
             return f"unexpected '{word}': a module is an option; write {_module(arguments[0], found)}"
+        if arguments[0] == "scenes" and word.partition("?")[0] in scene_names():
+            return f"unexpected '{word}': this command lists all scenes; to render one, write: aolab render {word}"
         if arguments[0] == "bench" and word in scene_names():
             return f"unexpected '{word}': here a scene is an option; write --scene {word}"
         if word.partition("?")[0] in scene_names():

@@ -99,6 +99,8 @@ SLIPS = {
     "--scene of render": ("render --scene boxes", "write aolab render boxes"),
     "a parameter as an argument": ("render boxes radius=0.5", "write --set radius=0.5"),
     "a scene as an argument of bench": ("bench boxes", "write --scene boxes"),
+    "a scene as an argument of scenes": ("scenes boxes", "to render one, write: aolab render boxes"),
+    "a function of Python": ("explain boxes", "it is a function in Python, aolab.explain"),
     "a misspelt scene as the command": ("boxs", "write: aolab render boxes"),
     "a module as the command": ("SSAO", "write: aolab render boxes --module ssao"),
     "help as the command": ("help", "write: aolab --help"),
