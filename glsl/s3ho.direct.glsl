@@ -9,9 +9,9 @@
 #include "lib/constants.glsl"
 
 const bool shared_light;     // multiply by `light_share`
+const float light_window;    // bands; the compiler computes the window
 
 uniform sampler2D light_share;
-uniform float light_window;  // bands
 
 vec3 directAt(Surface surface) {
     if (lights == 0) return vec3(0.0);

@@ -5,7 +5,7 @@ A pass treats up to four buffers alike, and reads the geometry once for all of t
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from math import ceil
+from functools import partial
 from types import MappingProxyType
 
 import moderngl
@@ -15,10 +15,10 @@ from ..gl.bindings import Bindings
 from ..gl.texture import FORMATS
 from ..modules.filters import Filter
 from ..modules.filters.base import MOST_SOURCES, over_sources, titled
-from ..modules.passes import Pass
 from ..scene.view import View, ray_scale_offset
+from .differing import differing
 from .pass_runner import Buffers, PassRunner
-from .tiles import PIXELS, Tiles, grid
+from .tiles import Tiles
 
 Formats = Mapping[str, str]
 
@@ -44,11 +44,15 @@ def apply(
     upsampled = small[1].size != large[1].size
     reach = filter.reach() if decides in background and runner.timer.software else None
     filtered = grown = None
-    if reach is not None and not (upsampled and filter.at_full_size):
-        filtered = _differing(runner, estimate, formats, decides, background[decides], (small[1], small[1]), reach)
-    if reach is not None and upsampled and filter.upsampling == Filter.upsampling:
-        reach = UPSAMPLING_REACH + (0 if filter.at_full_size else reach)
-        grown = _differing(runner, estimate, formats, decides, background[decides], (small[1], large[1]), reach)
+    if reach is not None:
+        name = titled(
+            "filter", next(names for names in _groups(estimate) if decides in names)
+        )  # its time is the filter's
+        find = partial(differing, runner, name, estimate[decides], formats[decides], background[decides], small[1])
+        if not (upsampled and filter.at_full_size):
+            filtered = find(small[1], reach)
+        if upsampled and filter.upsampling == Filter.upsampling:
+            grown = find(large[1], UPSAMPLING_REACH + (0 if filter.at_full_size else reach))
     result: Buffers = {}
     for names in _groups(estimate):
         some, textures = {name: formats[name] for name in names}, {name: estimate[name] for name in names}
@@ -64,40 +68,6 @@ def apply(
         if tiles:
             runner.give_back({"tiles": tiles.texture})
     return result
-
-
-def _differing(
-    runner: PassRunner,
-    estimate: Buffers,
-    formats: Formats,
-    decides: str,
-    value: float,
-    views: tuple[View, View],
-    reach: int,
-) -> Tiles:
-    """The tiles with a value other than `value` in the buffer `decides`, at most `reach` of its pixels from the tile.
-
-    `views`: the view of the buffer, and the view whose picture is drawn in tiles.
-    """
-    name = titled("filter", next(names for names in _groups(estimate) if decides in names))  # its time is the filter's
-    (scale_x, scale_y, left, bottom), (to_x, to_y, to_left, to_bottom) = (
-        ray_scale_offset(view.camera, view.size) for view in reversed(views)
-    )
-    ratio = scale_y / to_y
-    constants = {
-        "tile_pixels": PIXELS,
-        "across": ceil(PIXELS * ratio) + (ratio < 1),  # a tile may begin within a pixel
-        "reach": reach,
-        "single": FORMATS[formats[decides]][0] == 1,
-    }
-    texture = estimate[decides]
-    numbers = {
-        "value": value,
-        "source_texel_size": (1 / texture.width, 1 / texture.height),
-        "source_from_pixel": (scale_x / to_x, ratio, (left - to_left) / to_x, (bottom - to_bottom) / to_y),
-    }
-    step = Pass(name, "pipeline/tiles.frag", {"tiles": "R8"}, constants)
-    return Tiles(runner.run(step, [Bindings("the buffer", {"source": texture}, numbers)], grid(views[1].size))["tiles"])
 
 
 def _passes(
