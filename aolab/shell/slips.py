@@ -136,8 +136,7 @@ def _extra(message: str, arguments: list[str]) -> str | None:
         if arguments[0] == "bench" and word in scene_names():
             return f"unexpected '{word}': here a scene is an option; write --scene {word}"
         if word.partition("?")[0] in scene_names():
-            command = "render" if arguments[0] == "scenes" else arguments[0]
-            return f"unexpected '{word}': a command takes one scene; write aolab {command} {word}"
+            return f"unexpected '{word}': a command takes one scene; write aolab {arguments[0]} {word}"
     return None
 
 

@@ -95,7 +95,6 @@ SLIPS = {
     "a module as an argument of bench": ("bench ssao", "`aolab bench` measures every module"),
     "--module of bench": ("bench --module ssao", "`aolab bench` measures every module"),
     "two scenes": ("compare boxes cornell", "a command takes one scene; write aolab compare cornell"),
-    "a scene as an argument of scenes": ("scenes boxes", "write aolab render boxes"),
     "--scene of render": ("render --scene boxes", "write aolab render boxes"),
     "a parameter as an argument": ("render boxes radius=0.5", "write --set radius=0.5"),
     "a scene as an argument of bench": ("bench boxes", "write --scene boxes"),
