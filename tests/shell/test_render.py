@@ -362,7 +362,7 @@ REFUSED = {
         ("boxes", "--shader", "a.frag", "--like-module", "ssao", "--module", "ssdo"),
         r"give --like-module or --module, not both",
     ),
-    "two scenes": (("boxes", "cornell"), r"unexpected extra argument.*cornell"),
+    "two scenes": (("boxes", "cornell"), r"unexpected .cornell.: a command takes one scene"),
 }
 
 
