@@ -2,6 +2,8 @@
 
 import difflib
 import re
+import sys
+import warnings
 from collections.abc import Callable, Iterable
 
 LONG_WORD = 1000  # characters: longer ones, as of names in a damaged file, are shortened in messages
@@ -43,6 +45,14 @@ class Notice(UserWarning):
 
     def __init__(self, message: str = "") -> None:
         super().__init__(_with_short_words(message))
+
+
+def notice(message: str) -> None:
+    """Issue a `Notice`, at the line of the caller's own code that has led to it."""
+    frame, level = sys._getframe(1), 2
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "aolab":
+        frame, level = frame.f_back, level + 1
+    warnings.warn(message, Notice, stacklevel=level)
 
 
 LISTED = 32  # names in a message

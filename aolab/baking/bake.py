@@ -1,13 +1,12 @@
 """`aolab.bake`: the visibility of every vertex, and of every texel of meshes with UV, by the reference's rays."""
 
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..loading import load
 from ..maths.fading import Fading
 from ..modules.base import auto_radius
@@ -139,11 +138,9 @@ def _map_of(mesh: Mesh, texels: int) -> Texels | None:
 def _name_unusable(instances: Sequence[Instance]) -> None:
     names = sorted({instance.mesh.name for instance in instances})
     if names:
-        warnings.warn(
+        notice(
             f"{len(names)} meshes have UV that leave [0, 1] or overlap ({', '.join(names[:5])}): "
-            "occlusion is baked for their vertices alone",
-            Notice,
-            stacklevel=3,
+            "occlusion is baked for their vertices alone"
         )
 
 

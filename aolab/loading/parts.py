@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..errors import Notice, SceneError, shorten
+from ..errors import Notice, SceneError, notice, shorten
 from ..scene.camera import Camera
 from ..scene.environment import Environment
 from ..scene.lights import MAX_SHADOW_TILES, Light, shadow_tiles
@@ -54,7 +54,7 @@ class Notes:
     def emit(self, source: str | None) -> None:
         """A `Notice` for each kind, with the `source` before it, if there is one."""
         for text in self.texts():
-            warnings.warn(f"{source}: {text}" if source else text, Notice, stacklevel=2)
+            notice(f"{source}: {text}" if source else text)
         self._kinds.clear()
 
 

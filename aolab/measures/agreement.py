@@ -1,13 +1,12 @@
 """Whether two results may be compared at all: the same view, the same question, the same light."""
 
-import warnings
 from collections.abc import Callable, Iterable
 from itertools import zip_longest
 from typing import Any
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..pipeline.frame import Frame
 from ..scene.mesh import Mesh
 from ..scene.scene import Scene
@@ -37,7 +36,7 @@ def check(a: object, b: object, names: tuple[str, str], buffers: Iterable[str]) 
     buffers = {name.removesuffix("_raw") for name in buffers}
     told = [*_questions(a, b, names, buffers), *_scenes(a, b, names, buffers), *_lights(a, b, names, buffers)]
     for text in told:
-        warnings.warn(f"{text}; the difference counts as error", Notice, stacklevel=3)
+        notice(f"{text}; the difference counts as error")
 
 
 def _check_cameras(a: Frame, b: Frame, names: tuple[str, str]) -> None:

@@ -2,7 +2,6 @@
 
 import json
 import math
-import warnings
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
 from os import PathLike
@@ -11,7 +10,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from ..errors import Notice, ParameterError, suggestion
+from ..errors import ParameterError, notice, suggestion
 from ..output import replacing
 from ..pictures import display, html
 from ..table import table
@@ -127,7 +126,7 @@ def compare(
     for one in compared.buffers.values():
         if one.is_noisy:
             advice = "give the reference more `rays`, or an `error`"
-            warnings.warn(f"buffer '{one.name}': {one.about_noise}; {advice}", Notice, stacklevel=2)
+            notice(f"buffer '{one.name}': {one.about_noise}; {advice}")
     return compared
 
 
@@ -156,10 +155,8 @@ def _compare_buffer(
     finite = np.isfinite(result).all(axis=2) & np.isfinite(reference).all(axis=2)
     if broken := int((foreground & ~finite).sum()):
         y, x = np.argwhere(foreground & ~finite)[0]
-        warnings.warn(
-            f"buffer '{name}': {broken} pixels are left out, their values are not finite; the first is at x={x}, y={y}",
-            Notice,
-            stacklevel=3,
+        notice(
+            f"buffer '{name}': {broken} pixels are left out, their values are not finite; the first is at x={x}, y={y}"
         )
         foreground = foreground & finite
     if not foreground.any():

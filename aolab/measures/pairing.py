@@ -1,11 +1,10 @@
 """The arrays that two results share, and the regions of their image."""
 
-import warnings
 from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from ..errors import Notice, ParameterError, suggestion
+from ..errors import ParameterError, notice, suggestion
 from ..pipeline.frame import Frame
 from ..truth.buffers import standard_error
 from .quantities import kind_of
@@ -146,11 +145,7 @@ def _surface(depths: list[np.ndarray], size: tuple[int, int]) -> np.ndarray:
     if not mask.any():
         raise ParameterError(f"nothing to compare: all {size[0]}×{size[1]} pixels are background in viewZ")
     if differing := int((np.any(drawn, axis=0) & ~mask).sum()):
-        warnings.warn(
-            f"a and b do not show the same surfaces: {differing} pixels, background in one of them, are left out",
-            Notice,
-            stacklevel=4,
-        )
+        notice(f"a and b do not show the same surfaces: {differing} pixels, background in one of them, are left out")
     return mask
 
 

@@ -1,14 +1,13 @@
 """Relighting error: the error of a result while the light turns around the scene."""
 
 import json
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..gl.texture import Size
 from ..loading import load
 from ..modules import MODULES, Module, find
@@ -101,11 +100,9 @@ def relight(
             bar.update()
     found = Relighting(buffer, degrees, measures, relative)
     if found.noise > NOISY * found.rmse > 0:
-        warnings.warn(
+        notice(
             f"relighting error of '{buffer}': the reference's own standard error, {found.noise:.2g}, is "
-            f"{found.noise / found.rmse:.0%} of the RMSE, {found.rmse:.2g}; give the reference more `rays`",
-            Notice,
-            stacklevel=2,
+            f"{found.noise / found.rmse:.0%} of the RMSE, {found.rmse:.2g}; give the reference more `rays`"
         )
     return found
 

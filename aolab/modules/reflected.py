@@ -1,9 +1,8 @@
 """Bounces that the lighting gathers: the last step, the reflection, and the light that they do not send."""
 
-import warnings
 from collections.abc import Sequence
 
-from ..errors import Notice
+from ..errors import notice
 from ..scene.scene import Scene
 from .buffers import LIT
 from .estimate import Estimate
@@ -25,4 +24,4 @@ def note_emission(module: str, reflected: str, scene: Scene) -> None:
     """A `Notice` in a scene with emission, of which the module's bounce sends nothing, but what is `reflected`."""
     if scene.emits:
         text = f"{module}: its bounce reflects {reflected}; the emission of surfaces lights no others"
-        warnings.warn(text, Notice, stacklevel=3)
+        notice(text)

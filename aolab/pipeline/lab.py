@@ -1,7 +1,6 @@
 """The lab: keeps programs, textures and geometry between frames, and runs the passes of each."""
 
 import operator
-import warnings
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
@@ -13,7 +12,7 @@ from weakref import WeakSet
 
 import moderngl
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..gl import context
 from ..gl.bindings import Bindings
 from ..gl.program import Programs
@@ -186,12 +185,12 @@ class Lab:
         drawn = context.get().query(samples=True)
         result = self._frame(self._state(frame, drawn), frame.rasterizer, display)
         if not drawn.samples:
-            warnings.warn(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}", Notice, stacklevel=2)
+            notice(f"nothing is drawn: {clipping.reason_of_nothing(scene, view)}")
         elif reason_of_cut:
-            warnings.warn(reason_of_cut, Notice, stacklevel=2)
+            notice(reason_of_cut)
         if is_own(module) or self._programs.generation:  # a module of the user's own, or a shader that was edited
             for doubt in doubts(result, module.outputs):
-                warnings.warn(doubt, Notice, stacklevel=2)
+                notice(doubt)
         return result
 
     def _view(self, camera: Camera, scene: Scene, size: Size) -> tuple[View, str | None]:

@@ -1,12 +1,11 @@
 """Reflective shadow maps: the surfaces that each light sees, with the flux that they reflect; in one row."""
 
-import warnings
 from dataclasses import dataclass, replace
 from math import inf
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..gl import context
 from ..gl.bindings import Bindings
 from ..gl.texture import make
@@ -49,11 +48,9 @@ def draw_reflective(rasterizer: Rasterizer, lamps: Bindings, size: int) -> Refle
     """Draw the maps, `size` pixels a side. A `Notice` counts the point lights, which have none."""
     scene = rasterizer.scene
     if points := sum(isinstance(light, PointLight) for light in scene.lights):
-        warnings.warn(
+        notice(
             f"scene '{scene.name}': {points} of its {len(scene.lights)} lights are points, which have no reflective "
-            "shadow map: their light does not bounce. A spot has a map",
-            Notice,
-            stacklevel=2,
+            "shadow map: their light does not bounce. A spot has a map"
         )
     rows, projections = [], []
     for number, light in enumerate(scene.lights):

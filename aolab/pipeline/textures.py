@@ -1,12 +1,10 @@
 """Textures of materials on the GPU, with mip levels that keep the area of cut-out surfaces."""
 
-import warnings
-
 import moderngl
 import numpy as np
 from PIL import Image
 
-from ..errors import Notice
+from ..errors import notice
 from ..gl import context, raw
 from ..gl.texture import refuse_exhaustion
 from ..pictures.images import linear_from_srgb
@@ -30,10 +28,8 @@ def upload(texture: Texture, cutoff: float | None, colors: bool = True) -> moder
     if max(width, height) > limit:
         scale = limit / max(width, height)
         size = max(1, int(width * scale)), max(1, int(height * scale))
-        warnings.warn(
-            f"texture '{texture.name}' of {width}x{height} is over the driver's {limit}: drawn at {size[0]}x{size[1]}",
-            Notice,
-            stacklevel=2,
+        notice(
+            f"texture '{texture.name}' of {width}x{height} is over the driver's {limit}: drawn at {size[0]}x{size[1]}"
         )
         pixels = np.asarray(Image.fromarray(pixels).resize(size, Image.Resampling.BOX))
         height, width = pixels.shape[:2]

@@ -1,13 +1,12 @@
 """The light from far away: an equirectangular map of radiance, and the irradiance that it casts."""
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 from os import PathLike
 
 import numpy as np
 
-from ..errors import Notice, SceneError
+from ..errors import SceneError, notice
 from ..input import Budget, as_path
 from ..maths.harmonics import evaluate, irradiance, project
 from .camera import Vec3
@@ -79,11 +78,9 @@ class Environment:
         radiance[infinite] = largest
         counts = {"NaN": nan, "negative": negative, "infinite": infinite}
         found = ", ".join(f"{mask.any(axis=2).sum()} {kind}" for kind, mask in counts.items() if mask.any())
-        warnings.warn(
+        notice(
             f"environment '{self.name}': of {nan[..., 0].size} pixels, {found}: "
-            f"NaN and negative became 0, infinite {largest:g}",
-            Notice,
-            stacklevel=4,
+            f"NaN and negative became 0, infinite {largest:g}"
         )
 
     @classmethod

@@ -1,13 +1,12 @@
 """Triangles and what they are made of, checked once, on the way in."""
 
-import warnings
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
 
-from ..errors import Notice, SceneError
+from ..errors import SceneError, notice
 from ..maths.connected import connected
 from ..maths.local_maxima import local_maxima
 from ..maths.normals import NO_LENGTH, smooth_normals, usable_normals
@@ -195,10 +194,10 @@ class Mesh:
             self._refuse_nonfinite(array, f"{what}: {key} of vertex")
         material = self.material
         if (material.texture is not None or material.emission_texture is not None) and attributes["uv"] is None:
-            warnings.warn(f"{what}: a texture but no uv; drawn in its base colour", Notice, stacklevel=3)
+            notice(f"{what}: a texture but no uv; drawn in its base colour")
             object.__setattr__(self, "material", replace(material, texture=None, emission_texture=None))
         if self.material.bends_normals and attributes["uv"] is None:
-            warnings.warn(f"{what}: a normal map or a height map but no uv; drawn without", Notice, stacklevel=3)
+            notice(f"{what}: a normal map or a height map but no uv; drawn without")
             object.__setattr__(self, "material", replace(self.material, normal_texture=None, height=None))
         vertices, faces, source, attributes["normals"] = self._with_normals(
             vertices, faces, attributes["normals"], what
@@ -225,17 +224,17 @@ class Mesh:
         """Vertices, faces and normals, and the source of each vertex where vertices were split, else None."""
         count = len(vertices)
         if normals is not None and not np.abs(normals).max() > NO_LENGTH:
-            warnings.warn(f"{what}: its {count} normals have no length; made from the faces", Notice, stacklevel=4)
+            notice(f"{what}: its {count} normals have no length; made from the faces")
             normals = None
         if normals is None:
             return smooth_normals(vertices, faces, self.crease)
         vertices, faces, source, normals, made, flat = usable_normals(vertices, faces, normals)
         if made:
             text = f"{what}: {made} of {count} normals have no length; made from the faces"
-            warnings.warn(text, Notice, stacklevel=4)
+            notice(text)
         if flat:
             text = f"{what}: the normals of {flat} of {len(faces)} triangles lie in the triangle's plane; made from it"
-            warnings.warn(text, Notice, stacklevel=4)
+            notice(text)
         return vertices, faces, source if flat else None, normals
 
     @cached_property
@@ -316,11 +315,9 @@ class Mesh:
             return
         moved, extent = np.abs(vertices - given).max(), np.ptp(vertices, axis=0).max()
         if moved > 1e-4 * extent:
-            warnings.warn(
+            notice(
                 f"{what}: float32 moves its vertices by up to {moved:.2g} units, so far are they from the origin; "
-                "subtract their centre, and give it to the Instance as a translation",
-                Notice,
-                stacklevel=4,
+                "subtract their centre, and give it to the Instance as a translation"
             )
 
     @staticmethod
@@ -334,9 +331,7 @@ class Mesh:
         if dropped == len(faces):
             raise SceneError(f"{what} is empty: all of its {dropped} triangles are degenerate (no area)")
         if dropped:
-            warnings.warn(
-                f"{what}: dropped {dropped} of {len(faces)} triangles, degenerate (no area)", Notice, stacklevel=4
-            )
+            notice(f"{what}: dropped {dropped} of {len(faces)} triangles, degenerate (no area)")
         return faces[keep]
 
 

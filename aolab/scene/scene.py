@@ -1,13 +1,12 @@
 """A scene: meshes placed in the world, lights, an environment, a camera. Immutable, so that GPU copies can be kept."""
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
-from ..errors import Notice, SceneError
+from ..errors import SceneError, notice
 from ..maths.local_maxima import AXES, mean_nearest_distance
 from .camera import Camera
 from .environment import Environment
@@ -192,11 +191,9 @@ class Scene:
         inner = self.main_bounds
         if inner is not self.bounds:
             size = "{:.3g} × {:.3g} × {:.3g}"
-            warnings.warn(
+            notice(
                 f"scene '{self.name}': most of its vertices lie within {size.format(*np.ptp(inner, axis=0))} of its "
-                f"{size.format(*np.ptp(self.bounds, axis=0))} units; the camera frames those",
-                Notice,
-                stacklevel=4,
+                f"{size.format(*np.ptp(self.bounds, axis=0))} units; the camera frames those"
             )
         return inner
 

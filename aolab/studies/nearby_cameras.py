@@ -1,11 +1,10 @@
 """Cameras for a scene: its own camera, and cameras beside it that look at the same point."""
 
-import warnings
 from dataclasses import replace
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..gl.texture import Size
 from ..pipeline.lab import Lab
 from ..scene.camera import Camera
@@ -48,7 +47,7 @@ def cameras(scene: Scene, count: int, lab: Lab, size: Size) -> dict[float, Camer
         if abs(degrees) >= LEAST and degrees not in found:
             found[degrees] = turned(own, degrees)
         else:
-            warnings.warn(f"{scene.name}: no free view near {wanted:g} degrees; it is left out", Notice, stacklevel=3)
+            notice(f"{scene.name}: no free view near {wanted:g} degrees; it is left out")
     return found
 
 

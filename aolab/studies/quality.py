@@ -5,7 +5,6 @@ module without a radius with the rays for SSAO.
 """
 
 import statistics
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from itertools import product
@@ -13,7 +12,7 @@ from typing import Any, Literal, get_args
 
 import numpy as np
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
@@ -152,7 +151,7 @@ def _chosen(modules: Iterable[str | Module | type[Module]] | None, judge: SSAO, 
     for module in (find(one, MODULES) for one in (modules or MODULES)):
         if "visibility" not in {*module.outputs, *module.derived}:
             given = ", ".join(module.outputs)
-            warnings.warn(f"{label(type(module))} is left out: it has {given}, no visibility", Notice, stacklevel=3)
+            notice(f"{label(type(module))} is left out: it has {given}, no visibility")
         elif module.has_radius():
             chosen.append(module.replace(radius=judge.radius))
         else:

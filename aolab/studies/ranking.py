@@ -1,7 +1,6 @@
 """Modules compared with the truth and sorted by error: the study behind `aolab compare`."""
 
 import statistics
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from ..errors import Notice, ParameterError
+from ..errors import ParameterError, notice
 from ..extras import need
 from ..gl.texture import Size
 from ..loading import load
@@ -153,7 +152,7 @@ def compare_modules(
             f"buffer '{buffer}': the truth's own standard error is {shares} of the RMSE of {len(noisy)} of "
             f"{len(ranking)} results; give more `rays`"
         )
-        warnings.warn(text, Notice, stacklevel=2)
+        notice(text)
     return ranking
 
 

@@ -3,7 +3,6 @@
 import hashlib
 import json
 import os
-import warnings
 import zipfile
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
@@ -16,7 +15,7 @@ import numpy as np
 import platformdirs
 
 from .. import paths
-from ..errors import FileError, Notice
+from ..errors import FileError, notice
 from ..output import replacing
 from ..scene.mesh import Mesh
 from ..scene.scene import Scene
@@ -66,7 +65,7 @@ def load(name: str, wanted: Iterable[str]) -> dict[str, np.ndarray]:
     except (FileNotFoundError, NotADirectoryError):
         return {}
     except DAMAGED as error:
-        warnings.warn(f"the cached reference {path.name} is damaged and is made anew: {error}", Notice, stacklevel=4)
+        notice(f"the cached reference {path.name} is damaged and is made anew: {error}")
         return {}
     with suppress(OSError):
         os.utime(path)  # used just now
@@ -85,7 +84,7 @@ def store(name: str, arrays: Mapping[str, np.ndarray]) -> None:
             np.savez(file, **{**kept, **arrays})  # type: ignore[arg-type]
         _trim(path.parent)
     except (OSError, FileError) as error:
-        warnings.warn(f"the reference could not be cached: {error}; set AOLAB_CACHE", Notice, stacklevel=4)
+        notice(f"the reference could not be cached: {error}; set AOLAB_CACHE")
 
 
 def _read(path: Path, wanted: Iterable[str] | None = None) -> dict[str, np.ndarray]:

@@ -1,6 +1,5 @@
 """`aolab.reference`: the same buffers as a render's, by rays against all triangles."""
 
-import warnings
 from collections.abc import Iterable
 from dataclasses import asdict
 from numbers import Real
@@ -8,7 +7,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from ..errors import Notice, ParameterError, suggestion
+from ..errors import ParameterError, notice, suggestion
 from ..gl import context
 from ..gl.texture import Size
 from ..loading import load
@@ -144,11 +143,9 @@ def _tell_missed(frame: Frame, error: float) -> None:
             reached = root_mean_square(frame[standard_error(name)][mask])
             scale = root_mean_square(frame[name][mask])
             if reached > error * scale:
-                warnings.warn(
+                notice(
                     f"error = {error:g} is not met in '{name}', by {MOST_BATCHES} × rays a pixel at most: the standard "
-                    f"error is {reached / scale:.2g} of the root mean square; raise `rays`",
-                    Notice,
-                    stacklevel=3,
+                    f"error is {reached / scale:.2g} of the root mean square; raise `rays`"
                 )
 
 
@@ -156,11 +153,9 @@ def _asked(scene: Scene, like: Like | None, changes: dict[str, Any]) -> Question
     """The question of `like`, or the physical one, with `changes`."""
     if like is None:
         if changes.get("radius") is not None and not changes.keys() & {"falloff", "measure"}:
-            warnings.warn(
+            notice(
                 "the reference's falloff is 0, a hard edge at the radius; that of modules is "
-                f"{Marched.model_fields['falloff'].default} by default: give `like` a module, or state `falloff`",
-                Notice,
-                stacklevel=3,
+                f"{Marched.model_fields['falloff'].default} by default: give `like` a module, or state `falloff`"
             )
         return Question().replace(**changes)
     if given := [name for name in ("radius", "falloff", "spread") if changes.get(name)]:

@@ -1,9 +1,8 @@
 """Occluders: the height maps of surfaces, alone or together with the camera's depth."""
 
-import warnings
 from dataclasses import replace
 
-from ...errors import Notice
+from ...errors import notice
 from ...scene.view import View
 from ..parameters import parameter
 from .base import Drawing, OccluderKind, Occluders, Textures
@@ -23,12 +22,10 @@ class Height(OccluderKind):
 
     def draw(self, drawing: Drawing, view: View, surfaces: Textures, sends: bool) -> Occluders:
         if not drawing.scene.height_maps:
-            warnings.warn(
+            notice(
                 f"scene '{drawing.scene.name}' has no height map: occluders='height' "
                 + ("finds the camera's depth alone" if self.depth_too else "finds nothing, and all is open")
-                + "; set Material.height",
-                Notice,
-                stacklevel=2,
+                + "; set Material.height"
             )
         reliefs = drawing.reliefs()
         own = self.bindings(dict(reliefs.textures), reliefs.uniforms)

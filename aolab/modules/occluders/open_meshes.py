@@ -1,9 +1,8 @@
 """A notice about meshes without an inside, where solids between depth layers are asked for."""
 
-import warnings
 import weakref
 
-from ...errors import Notice
+from ...errors import notice
 from ...scene.mesh import Mesh
 from ...scene.scene import Scene
 
@@ -17,9 +16,7 @@ def name_open_meshes(scene: Scene) -> None:
     _named.update(fresh)
     if fresh:
         names = ", ".join(sorted({mesh.name for mesh in fresh})[:5])
-        warnings.warn(
+        notice(
             f"{len(fresh)} of {len(meshes)} meshes are not closed ({names}): between two layers need be no solid. "
-            "Where the last layer has no back, `thickness` closes it",
-            Notice,
-            stacklevel=2,
+            "Where the last layer has no back, `thickness` closes it"
         )

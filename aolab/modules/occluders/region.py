@@ -1,12 +1,11 @@
 """The region of interest of a grid: the whole scene, a box, or the surroundings of an object that may move."""
 
-import warnings
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from ...errors import Notice, ParameterError, suggestion
+from ...errors import ParameterError, notice, suggestion
 from ...scene.scene import Scene
 
 Corner = tuple[float, float, float]
@@ -29,11 +28,9 @@ def region_of(scene: Scene, region: str | Box) -> np.ndarray:
     if not np.ptp(box, axis=0).any():
         raise ParameterError(f"voxel_region = {region} has no extent: its two corners are the same")
     if not any(_meet(box, instance.bounds) for instance in scene.instances):
-        warnings.warn(
+        notice(
             f"voxel_region = {region} holds no mesh of scene '{scene.name}', whose bounds are "
-            f"{_plain(scene.bounds[0])} to {_plain(scene.bounds[1])}: nothing will block",
-            Notice,
-            stacklevel=2,
+            f"{_plain(scene.bounds[0])} to {_plain(scene.bounds[1])}: nothing will block"
         )
     return box
 

@@ -1,12 +1,11 @@
 """aolab beside other projects' ambient occlusion: the same scene, camera, size, radius and truth, in turns."""
 
 import statistics
-import warnings
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
-from ...errors import Notice, ParameterError
+from ...errors import ParameterError, notice
 from ...gl import context
 from ...gl.texture import Size
 from ...loading import load
@@ -136,7 +135,7 @@ def _peers(scene: Scene, camera: Camera, size: Size, radius: float) -> list[Peer
     if not found:
         raise ParameterError("no other renderer to race: " + "; ".join(reasons))
     for reason in reasons:
-        warnings.warn(reason, Notice, stacklevel=3)
+        notice(reason)
     return found
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ...errors import Error, FileError, Notice, ParameterError, suggestion
+from ...errors import Error, FileError, ParameterError, notice, suggestion
 from ...gl.texture import Size, check_size
 from ...input import read_text
 from ...modules import MODULES, Module, find
@@ -102,7 +102,7 @@ class Plan:
         for name, modules in lacking.items():
             if len(modules) == len(self.modules):
                 raise ParameterError(f"sweep: no module here has the parameter '{name}'{suggestion(name, known)}")
-            warnings.warn(f"sweep: {', '.join(modules)} has no '{name}': left out there", Notice, stacklevel=5)
+            notice(f"sweep: {', '.join(modules)} has no '{name}': left out there")
 
     @staticmethod
     def _check_values(cases: Sequence[Case]) -> None:
