@@ -40,6 +40,8 @@ def meant(message: str, arguments: list[str]) -> str | None:
         return WANTED.get(message.split("'")[1])
     if message.startswith(("No such option", "Got unexpected extra argument", "--set", "size = ", "--")):
         return _spaces(arguments) or _option(message, arguments) or _extra(message, arguments)
+    if message.startswith("no file") and arguments[0] == "sweep":
+        return f"{message}: {WITHOUT['sweep']}"
     return None
 
 

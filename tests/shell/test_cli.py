@@ -91,6 +91,10 @@ SLIPS = {
     "--module of compare": ("compare boxes --module ssao", "write --modules ssao"),
     "--set of compare": ("compare boxes --set radius=0.5", 'write --modules "ssao?radius=0.5"'),
     "a module as an argument of sweep": ("sweep boxes ssao", "stand in a file: aolab sweep SPEC.toml"),
+    "a scene as the argument of sweep": (
+        "sweep boxes",
+        "no file boxes: the scene, the module and its parameters stand in a",
+    ),
     "--scene of sweep": ("sweep --scene boxes", "stand in a file: aolab sweep SPEC.toml"),
     "a module as an argument of bench": ("bench ssao", "`aolab bench` measures every module"),
     "--module of bench": ("bench --module ssao", "`aolab bench` measures every module"),
