@@ -45,9 +45,8 @@ def apply(
     reach = filter.reach() if decides in background and runner.timer.software else None
     filtered = grown = None
     if reach is not None:
-        name = titled(
-            "filter", next(names for names in _groups(estimate) if decides in names)
-        )  # its time is the filter's
+        # the time of the search is the filter's
+        name = titled("filter", next(names for names in _groups(estimate) if decides in names))
         find = partial(differing, runner, name, estimate[decides], formats[decides], background[decides], small[1])
         if not (upsampled and filter.at_full_size):
             filtered = find(small[1], reach)

@@ -1,7 +1,7 @@
 """The lab: keeps programs, textures and geometry between frames, and runs the passes of each."""
 
 import operator
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from functools import partial
@@ -307,11 +307,12 @@ class Lab:
         module = state.frame.module
         waits = ["albedo"] if "albedo" not in state.large else []
         names = [*lighting.names(module), *reflective, *waits]
-        later = [Later(names, partial(self._lit, state, lights, display))]
+        later = [Later(names, partial(self._made, state, partial(self._lit, lights, display), "the light of a frame"))]
         if lighting.in_one_pass(module):
-            later.insert(0, Later(["image"], partial(self._picture, state, lights, display)))
+            picture = partial(self._picture, lights, display)
+            later.insert(0, Later(["image"], partial(self._made, state, picture, "a picture")))
         if waits:
-            later.insert(0, Later(waits, partial(self._albedo, state)))
+            later.insert(0, Later(waits, partial(self._made, state, self._albedo, "the albedo of a frame")))
         return later
 
     def _lights(self, state: SurfaceState) -> Lights:
@@ -339,56 +340,50 @@ class Lab:
             self._virtual[step.name] = key, maps
         return self._virtual[step.name][1]
 
-    def _picture(
-        self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
+    def _made(
+        self, state: SurfaceState, make: Callable[[SurfaceState, Frame], Buffers], what: str, result: Frame
     ) -> tuple[Buffers, dict[str, float]]:
-        """The picture of a frame, and the milliseconds of its pass."""
-        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
-        state = state.under(rasterizer)
-        runner = rasterizer.runner
-        with self._lending(runner):
-            lights = lights or self._lights(state)
-            buffers = lighting.image(state, lights, self._environments.of(lights.sky), display)
-            refuse_exhaustion("a picture of {}x{}".format(*state.frame.view.size))
-        lend(result, self._pool, runner.lent)
-        return buffers, runner.timer.result()
+        """The buffers that `make` draws for a frame that waits for them, and the milliseconds of the passes.
 
-    def _albedo(self, state: SurfaceState, result: Frame) -> tuple[Buffers, dict[str, float]]:
-        """`albedo` of a frame with a palette, and the milliseconds of its pass."""
+        `what` they are is for errors. The textures live as long as the frame.
+        """
         rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
         runner = rasterizer.runner
         with self._lending(runner):
-            buffers = palettes.albedo(state.under(rasterizer))
-            refuse_exhaustion("the albedo of {}x{} pixels".format(*state.frame.view.size))
+            buffers = make(state.under(rasterizer), result)
+            refuse_exhaustion("{} of {}x{}".format(what, *state.frame.view.size))
+        if result.lit is not None:
+            self._waiting.discard(result)
         lend(result, self._pool, runner.lent)
         return buffers, runner.timer.result()
 
-    def _lit(
-        self, state: SurfaceState, lights: Lights | None, display: Display, result: Frame
-    ) -> tuple[Buffers, dict[str, float]]:
-        """The light of a frame, and the milliseconds of its passes. The textures live as long as the frame."""
-        rasterizer = self._rasterizer(state.frame.scene, state.frame.last)
-        state = state.under(rasterizer)
-        runner, view = rasterizer.runner, state.frame.view
-        with self._lending(runner):
-            lights = lights or self._lights(state)
-            buffers, sending = lighting.light(state, lights), state
-            if bounce := state.frame.module.bounce():
-                sender, sending = senders(state, buffers, lights)
-                known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
-                gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
-                buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, buffers, gathered, view)}
-            if lights.reflective:
-                buffers |= lights.reflective.buffers
-            if "albedo" not in state.large:
-                buffers |= palettes.albedo(state)
-            sky = self._environments.of(lights.sky)
-            buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
-            result.lit = Lit(lights, sending)
-            refuse_exhaustion(f"the light of a frame of {view.size[0]}x{view.size[1]}")
-        self._waiting.discard(result)
-        lend(result, self._pool, runner.lent)
-        return buffers, runner.timer.result()
+    def _albedo(self, state: SurfaceState, _: Frame) -> Buffers:
+        """`albedo` of a frame with a palette."""
+        return palettes.albedo(state)
+
+    def _picture(self, lights: Lights | None, display: Display, state: SurfaceState, _: Frame) -> Buffers:
+        """The picture of a frame."""
+        lights = lights or self._lights(state)
+        return lighting.image(state, lights, self._environments.of(lights.sky), display)
+
+    def _lit(self, lights: Lights | None, display: Display, state: SurfaceState, result: Frame) -> Buffers:
+        """The light of a frame, and all else that waits."""
+        runner, view = state.frame.runner, state.frame.view
+        lights = lights or self._lights(state)
+        buffers, sending = lighting.light(state, lights), state
+        if bounce := state.frame.module.bounce():
+            sender, sending = senders(state, buffers, lights)
+            known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
+            gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
+            buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, buffers, gathered, view)}
+        if lights.reflective:
+            buffers |= lights.reflective.buffers
+        if "albedo" not in state.large:
+            buffers |= palettes.albedo(state)
+        sky = self._environments.of(lights.sky)
+        buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
+        result.lit = Lit(lights, sending)
+        return buffers
 
     @contextmanager
     def _lending(self, runner: PassRunner) -> Iterator[None]:

@@ -12,7 +12,7 @@ from ..modules.passes import TERMS, Pass
 from ..scene.scene import Scene
 from .asked import sampled
 from .doubts import is_own
-from .geometry import stored
+from .geometry import kinds_of, stored
 from .lighting import in_one_pass
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
@@ -30,7 +30,8 @@ def is_enough(frame: FrameContext) -> bool:
     Each mesh has one colour; and the albedo is read by terms of the lighting alone, which read the palette too.
     """
     scene, module = frame.scene, frame.module
-    if len(scene.meshes) > MOST or any(mesh.material.texture or mesh.colors is not None for mesh in scene.meshes):
+    kinds = kinds_of(scene)
+    if len(scene.meshes) > MOST or kinds["textured"] or kinds["vertex_colored"]:
         return False
     if module.scale < 1 or is_own(module) or not in_one_pass(module):
         return False

@@ -148,11 +148,10 @@ def compare_modules(
     ranking = Ranking(sorted(entries, key=lambda entry: entry.comparison[buffer].rmse))
     if noisy := [one for one in map(_only, ranking) if one.is_noisy]:
         shares = " to ".join(dict.fromkeys(f"{end(one.noise / one.rmse for one in noisy):.0%}" for end in (min, max)))
-        text = (
+        notice(
             f"buffer '{buffer}': the truth's own standard error is {shares} of the RMSE of {len(noisy)} of "
             f"{len(ranking)} results; give more `rays`"
         )
-        notice(text)
     return ranking
 
 
