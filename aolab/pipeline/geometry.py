@@ -37,16 +37,15 @@ INSTANCE_BYTES = 17 * 4  # world_from_local 16f, number 1f
 MESH_TEXTURES = {"base_texture": 0, "emission_texture": 1, "normal_texture": 2}  # of each mesh in turn, by their units
 
 
-def kinds_of(scene: Scene) -> dict[str, Constant]:
-    """Constants: whether some mesh is single-sided, has holes or is blended, and so on.
+def kinds_of(meshes: Collection[Mesh]) -> dict[str, Constant]:
+    """Constants: whether one of the meshes is single-sided, has holes or is blended, and so on.
 
     Most scenes have few of these, and their shaders are spared the rest.
     """
-    meshes = scene.meshes
     return {
         "one_sided": any(not mesh.material.double_sided for mesh in meshes),
         "cut_outs": any(mesh.material.has_holes for mesh in meshes),
-        "bent_normals": scene.bends_normals,
+        "bent_normals": any(mesh.material.bends_normals for mesh in meshes),
         "textured": any(mesh.material.texture is not None for mesh in meshes),
         "vertex_colored": any(mesh.colors is not None for mesh in meshes),
     }
@@ -94,18 +93,23 @@ class Geometry:
         self._textures: weakref.WeakKeyDictionary[Texture, dict[object, moderngl.Texture]]
         self._textures = weakref.WeakKeyDictionary()  # by the alpha at which it is cut, and of numbers
         self._white: moderngl.Texture | None = None
-        self._scenes: weakref.WeakKeyDictionary[Scene, Mapping[Mesh, Mapping[bool, bytes]]]
+        self._scenes: weakref.WeakKeyDictionary[Scene, Sequence[tuple[Mesh, int, Mapping[bool, bytes]]]]
         self._scenes = weakref.WeakKeyDictionary()
         self._seen: tuple[Scene, View, Collection[Mesh]] | None = None
         self.reliefs = ReliefStore()
 
-    def draw(self, scene: Scene, program: Program, seen_from: View | None = None) -> None:
-        """Draw every instance; sets the program's `MESH_UNIFORMS`, and binds `MESH_TEXTURES`.
+    def draw(
+        self, scene: Scene, program: Program, seen_from: View | None = None, only: Collection[Mesh] | None = None
+    ) -> None:
+        """Draw every instance, or those of `only` these meshes; sets `MESH_UNIFORMS`, and binds `MESH_TEXTURES`.
 
-        Backs of solids that the view `seen_from` cannot see are left out.
+        Backs of solids that the view `seen_from` cannot see are left out. The order of meshes is always the same,
+        so that of surfaces at equal depth the same is seen.
         """
         gl, without_backs = context.get(), self._without_backs(scene, seen_from) if seen_from else ()
-        for number, (mesh, placements) in enumerate(self._placed(scene).items()):
+        for mesh, number, placements in self._placed(scene):
+            if only is not None and mesh not in only:
+                continue
             gpu = self._of(mesh)
             self._use_material(mesh, number, program, scene)
             if mesh in without_backs:
@@ -122,13 +126,18 @@ class Geometry:
             self._seen = scene, view, frozenset(with_hidden_backs(scene, view))
         return self._seen[2]
 
-    def _placed(self, scene: Scene) -> Mapping[Mesh, Mapping[bool, bytes]]:
-        """{mesh: {mirrored: the placements of its instances}}, kept for as long as the scene lives."""
+    def _placed(self, scene: Scene) -> Sequence[tuple[Mesh, int, Mapping[bool, bytes]]]:
+        """(mesh, its number, {mirrored: the placements of its instances}), kept for as long as the scene lives.
+
+        Meshes with patterns come last: they may be drawn by a pass of their own.
+        """
         if scene not in self._scenes:
-            groups: dict[Mesh, list[np.ndarray]] = {}
+            groups: dict[Mesh, list[np.ndarray]] = {mesh: [] for mesh in scene.meshes}
             for instance in scene.instances:
-                groups.setdefault(instance.mesh, []).append(instance.world_from_local)
-            self._scenes[scene] = {mesh: _placements(some, scene) for mesh, some in groups.items()}
+                groups[instance.mesh].append(instance.world_from_local)
+            numbered = [(mesh, number, groups[mesh]) for number, mesh in enumerate(groups)]
+            numbered.sort(key=lambda entry: entry[0].is_patterned)
+            self._scenes[scene] = [(mesh, number, _placements(some, scene)) for mesh, number, some in numbered]
         return self._scenes[scene]
 
     def _group(self, gpu: _GpuMesh, mirrored: bool, placement: bytes) -> _Group:

@@ -252,11 +252,10 @@ class Lab:
 
     def _surfaces(self, frame: FrameContext, asked: Asked, depth: moderngl.Texture) -> Buffers:
         """The surface buffers at full size. Where a palette is enough, `palette` stands in the place of `albedo`."""
-        formats, palette = surface_formats(frame, asked), {}
+        formats = surface_formats(frame, asked)
         if palettes.is_enough(frame) and not self._programs.generation:  # an edited shader may read more
-            del formats["albedo"]
-            palette = {"palette": self._palettes.of(frame.scene)}
-        return frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth) | palette
+            return self._palettes.surfaces(frame, formats, depth)
+        return frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth)
 
     def _frame(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
         """A frame from kept surfaces. Its light, that of the rasterizer's scene, is computed when it is first read."""
@@ -283,8 +282,7 @@ class Lab:
             **asdict(display),
             "triangles": scene.triangles,
         }
-        shown = {**state.large, **state.estimate}
-        shown.pop("palette", None)  # `albedo` waits
+        shown = {**palettes.left_out(state.large), **state.estimate}  # their `albedo` waits
         if not scene.is_smooth:
             del shown["facetNormal"]  # it is viewNormal
         result = Frame(

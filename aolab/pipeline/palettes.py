@@ -1,22 +1,23 @@
-"""Palettes: the albedo of each mesh, for scenes whose meshes have one albedo each."""
+"""Palettes: the albedo of each mesh that has one albedo. That of other meshes, with patterns, is drawn."""
 
 import weakref
+from collections.abc import Mapping
 
 import moderngl
 import numpy as np
 
 from ..gl.bindings import Bindings
-from ..gl.texture import make
+from ..gl.texture import Depth, make
 from ..modules.buffers import SURFACES
 from ..modules.passes import TERMS, Pass
 from ..scene.scene import Scene
 from .asked import sampled
 from .doubts import is_own
-from .geometry import kinds_of, stored
+from .geometry import stored
 from .lighting import in_one_pass
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
-from .surfaces import as_bindings
+from .surfaces import PALETTE, as_bindings
 
 MOST = 2048  # meshes: half floats hold the whole numbers up to here
 
@@ -27,11 +28,10 @@ _ALBEDO = Pass("albedo", "pipeline/albedo.frag", {"albedo": _FORMAT}, background
 def is_enough(frame: FrameContext) -> bool:
     """Whether the number of a pixel's mesh may stand for its albedo, which need not be drawn then.
 
-    Each mesh has one colour; and the albedo is read by terms of the lighting alone, which read the palette too.
+    Some mesh has one albedo; and the albedo is read by terms of the lighting alone, which read the palette too.
     """
     scene, module = frame.scene, frame.module
-    kinds = kinds_of(scene)
-    if len(scene.meshes) > MOST or kinds["textured"] or kinds["vertex_colored"]:
+    if len(scene.meshes) > MOST or all(mesh.is_patterned for mesh in scene.meshes):
         return False
     if module.scale < 1 or is_own(module) or not in_one_pass(module):
         return False
@@ -39,10 +39,15 @@ def is_enough(frame: FrameContext) -> bool:
 
 
 def albedo(state: SurfaceState) -> Buffers:
-    """`albedo` from the palette."""
+    """`albedo` from the palette and the patterns."""
     view = state.frame.view
     given = [as_bindings(state.large), Bindings("the view", uniforms=view.uniforms, constants=view.constants)]
     return state.frame.runner.run(_ALBEDO, given, view.size, where=state.where)
+
+
+def left_out(buffers: Buffers) -> Buffers:
+    """The buffers without those of a palette."""
+    return {name: texture for name, texture in buffers.items() if name not in PALETTE}
 
 
 class Palettes:
@@ -51,10 +56,23 @@ class Palettes:
     def __init__(self) -> None:
         self._textures: weakref.WeakKeyDictionary[Scene, moderngl.Texture] = weakref.WeakKeyDictionary()
 
-    def of(self, scene: Scene) -> moderngl.Texture:
-        """The albedos of the scene's meshes in a row, by number; the same as those that the G-buffer holds."""
+    def surfaces(self, frame: FrameContext, formats: Mapping[str, str], depth: Depth) -> Buffers:
+        """The surface buffers with `palette` in the place of `albedo`, and `patterns` for meshes with patterns."""
+        scene, views, draw = frame.scene, [frame.view], frame.rasterizer.surfaces
+        without = {name: format for name, format in formats.items() if name != "albedo"}
+        patterned = {mesh for mesh in scene.meshes if mesh.is_patterned}
+        buffers = draw(views, formats=without, depth=depth, only={*scene.meshes} - patterned)
+        if patterned:
+            buffers = draw(views, formats=formats, depth=depth, only=patterned, onto=buffers)
+            buffers["patterns"] = buffers.pop("albedo")
+        return buffers | {"palette": self._of(scene)}
+
+    def _of(self, scene: Scene) -> moderngl.Texture:
+        """A row of the meshes' albedos by number, as the G-buffer stores them; 0 for a mesh with patterns."""
         if scene not in self._textures:
-            colors = np.ones((len(scene.meshes), 4), np.float16)
-            colors[:, :3] = [stored(mesh.material.base_color) for mesh in scene.meshes]
+            colors = np.zeros((len(scene.meshes), 4), np.float16)
+            for color, mesh in zip(colors, scene.meshes, strict=True):
+                if not mesh.is_patterned:
+                    color[:] = *stored(mesh.material.base_color), 1
             self._textures[scene] = make((len(colors), 1), _FORMAT, colors.tobytes())
         return self._textures[scene]

@@ -85,9 +85,12 @@ class PassRunner:
         self.lent.append((size, format, texture))
         return texture
 
-    def targets(self, step: Pass, size: Size) -> Buffers:
-        """A texture for each output of the pass."""
-        return {name: self.take(size, format, step.outside.get(name)) for name, format in step.outputs.items()}
+    def targets(self, step: Pass, size: Size, given: Mapping[str, moderngl.Texture] = MappingProxyType({})) -> Buffers:
+        """A texture for each output of the pass, that of `given` where it has one."""
+        return {
+            name: given.get(name) or self.take(size, format, step.outside.get(name))
+            for name, format in step.outputs.items()
+        }
 
     def give_back(self, buffers: Buffers) -> None:
         """Scratch textures that the frame need not keep; the next pass may draw over them."""

@@ -1,6 +1,6 @@
 """Draws the scene's triangles: G-buffers, depth layers, and the geometry passes of modules and occluder kinds."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import nullcontext
 
 import moderngl
@@ -10,6 +10,7 @@ from ..gl.bindings import Bindings, joined
 from ..gl.texture import Depth, attach
 from ..modules.buffers import ON_DEMAND
 from ..modules.passes import GeometryPass, Pass
+from ..scene.mesh import Mesh
 from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
 from .geometry import MESH_TEXTURES, MESH_UNIFORMS, Geometry, kinds_of
@@ -51,14 +52,16 @@ class Rasterizer:
         name: str = "g_buffer",
         formats: Mapping[str, str] = G_BUFFER,
         depth: Depth | None = None,
+        only: Collection[Mesh] | None = None,
+        onto: Buffers | None = None,
     ) -> Buffers:
         """The G-buffer of all `views`, tiles of one texture for each of `formats`: see `surfaces.g_buffer`.
 
-        `depth` is filled with depths of up to `FARTHEST`, and 1 in the background.
+        `depth` is filled with depths of up to `FARTHEST`, and 1 in the background. `only` and `onto`: see `triangles`.
         """
         step = g_buffer(name, self._needed(formats), atlas=len(views) > 1)
         with raw.depth_up_to(FARTHEST):
-            return with_facets(self.triangles(step, views, depth=depth, skip_backs=True))
+            return with_facets(self.triangles(step, views, depth=depth, skip_backs=True, only=only, onto=onto))
 
     def _needed(self, formats: Mapping[str, str]) -> Mapping[str, str]:
         """The formats, and those of buffers that this scene needs besides.
@@ -124,14 +127,19 @@ class Rasterizer:
         bindings: Iterable[Bindings] = (),
         depth: Depth | None = None,
         skip_backs: bool = False,
+        only: Collection[Mesh] | None = None,
+        onto: Buffers | None = None,
     ) -> Buffers:
         """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one.
 
-        With `skip_backs`, backs that are hidden behind the fronts of their solid are left out.
+        With `skip_backs`, backs that are hidden behind the fronts of their solid are left out. With `only`, other meshes
+        than these are left out. With `onto`, the triangles are added to these outputs of another pass and to its depth;
+        further outputs are unspecified where none of the triangles is.
         """
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet
         # of each mesh in turn, by Geometry.draw
-        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds_of(self.scene))
+        kinds = kinds_of(self.scene.meshes if only is None else only)
+        mesh = Bindings("the mesh", uniforms=MESH_UNIFORMS, constants=kinds)
         own = [
             *bindings,
             mesh,
@@ -144,12 +152,13 @@ class Rasterizer:
         program = runner.program(step, given[0], step.vertex, step.geometry)
         tested = step.combine == "nearest"
         depth = (depth or self.depth.of(size)) if tested else None
-        targets = runner.targets(step, size)
+        targets = runner.targets(step, size, onto or {})
         # a depth texture alone is not kept in the pool, which would keep it for good
         framebuffer = runner.framebuffer(program, step, targets, depth) if targets else attach([], depth)
         runner.bind(program, given[0].textures, step.reads, MESH_TEXTURES)
         with runner.timer.measure(step.name):
-            _clear(runner, framebuffer, step, targets, size)
+            if onto is None:
+                _clear(runner, framebuffer, step, targets, size)
             gl.enable_only(moderngl.DEPTH_TEST if tested else moderngl.NOTHING)
             with nullcontext() if tested else raw.or_bits():
                 for viewpoint, one in zip(viewpoints, given, strict=True):
@@ -157,7 +166,7 @@ class Rasterizer:
                     framebuffer.viewport = viewpoint.region
                     framebuffer.use()
                     seen_from = viewpoint if skip_backs and isinstance(viewpoint, View) else None
-                    self.geometry.draw(self.scene, program, seen_from)
+                    self.geometry.draw(self.scene, program, seen_from, only)
             gl.enable_only(moderngl.NOTHING)
         return targets
 

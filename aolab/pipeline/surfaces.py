@@ -10,6 +10,7 @@ from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
 
 G_BUFFER = {name: buffer.format for name, buffer in SURFACES.items()}
+PALETTE = "palette", "patterns"  # in the place of `albedo`: see palettes.py
 # off the screen, where nothing is known, the depth is the background's: nothing blocks
 _OUTSIDE = {"viewZ": BACKGROUND_Z}
 
@@ -46,7 +47,7 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
 
 def as_bindings(buffers: Buffers) -> Bindings:
     """The surface buffers, for the passes that read them; see glsl/lib/surface.glsl."""
-    return Bindings("the surfaces", buffers, constants={"has_palette": "palette" in buffers})
+    return Bindings("the surfaces", buffers, constants={f"has_{name}": name in buffers for name in PALETTE})
 
 
 def facing(surfaces: Buffers, normals: str) -> Buffers:

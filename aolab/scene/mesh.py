@@ -242,6 +242,11 @@ class Mesh:
         """(2, 3) float64: the least and greatest local coordinates."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)], np.float64)
 
+    @property
+    def is_patterned(self) -> bool:
+        """Whether the albedo may vary over the mesh: it has a texture, or colours of vertices."""
+        return self.material.texture is not None or self.colors is not None
+
     @cached_property
     def is_smooth(self) -> bool:
         """Whether the normals of a vertex and of a triangle there differ, as on a curved surface."""

@@ -3,13 +3,13 @@
 // direct.frag, ambient.frag and indirect.frag store one term each; image.frag adds them up.
 
 #include "lib/space.glsl"
+#include "lib/palette.glsl"
 
-const bool has_palette;   // each mesh has one albedo, and the palette stands for the buffer
+const bool has_palette;   // a palette stands for the buffer `albedo`
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
-uniform sampler2D palette;    // albedos by the number of the mesh
 uniform vec4 ray_from_pixel;
 uniform vec2 texel_size;
 uniform mat4 world_from_view;
@@ -26,8 +26,9 @@ bool surfaceHere(out Surface surface) {
     vec2 uv = gl_FragCoord.xy * texel_size;
     float surfaceZ = texture(viewZ, uv).r;
     vec4 normal = texture(viewNormal, uv);   // w: the number of the mesh
-    vec3 reflected = (has_palette ? texelFetch(palette, ivec2(normal.w, 0), 0) : texture(albedo, uv)).rgb;
-    surface = Surface(ivec2(gl_FragCoord.xy), viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), normal.xyz, reflected);
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    vec3 reflected = (has_palette ? paletteAlbedo(pixel, normal.w) : texture(albedo, uv)).rgb;
+    surface = Surface(pixel, viewPosAt(gl_FragCoord.xy, surfaceZ, ray_from_pixel), normal.xyz, reflected);
     return !isBackground(surfaceZ);
 }
 

@@ -52,16 +52,49 @@ def test_the_albedo_is_drawn_for_passes_that_read_it(lab):
         assert "albedo" in frame.kept.large, module
 
 
-def test_the_albedo_is_drawn_where_it_varies_over_a_mesh(lab):
+def patterned() -> Scene:
+    """A tinted box and a tiled floor, which are the first and last of the meshes; between them, two of one colour."""
     floor, box = small_scenes.floor(2), small_scenes.box((-1, 0, -1), (0, 1, 0))
     shades = np.linspace(0, 1, 4 * len(box.vertices), dtype=np.float32).reshape(-1, 4)
     tinted = Mesh(box.vertices, box.faces, box.normals, colors=shades, material=box.material)
     checks = aolab.Texture(np.array([[[255, 0, 0, 255], [0, 255, 0, 255]]], np.uint8))
     tiled = Mesh(floor.vertices, floor.faces, uv=floor.vertices[:, ::2], material=replace(WHITE, texture=checks))
-    for scene in (small_scenes.of(floor, tinted), small_scenes.of(tiled, box)):
-        frame = lab.render(scene, "ssao", size=SIZE)
-        assert "albedo" in frame.kept.large
-        assert len(np.unique(frame["albedo"][frame.mask], axis=0)) > 2
+    red, green, _ = (replace(WHITE, base_color=color) for color in COLORS.values())
+    plain = small_scenes.box((0.3, 0, -0.4), (1.2, 0.6, 0.7), red), small_scenes.box((0, 1, -1), (0.4, 1.4, 0), green)
+    return small_scenes.of(tinted, *plain, tiled, lights=(DirectionalLight((1, -2, -1), (2, 2, 2)),))
+
+
+def test_the_albedo_is_drawn_where_it_varies_over_a_mesh(lab, drawn, monkeypatch):
+    other = drawn.render(patterned(), "ssao").complete()
+    monkeypatch.undo()
+    frame = lab.render(patterned(), "ssao", size=SIZE)
+    assert "albedo" not in frame.kept.large
+    assert not {"palette", "patterns"} & {*frame}
+    # the drawn albedo is multiplied by an interpolated colour of 1, which is 1 up to rounding
+    np.testing.assert_allclose(frame["albedo"], other["albedo"], rtol=2**-10)
+    assert len(np.unique(frame["albedo"][frame.mask], axis=0)) > 20
+    for name in ("viewZ", "viewNormal", "visibility"):
+        np.testing.assert_array_equal(frame[name], other[name], err_msg=name)
+    np.testing.assert_allclose(frame["radiance"], other["radiance"], rtol=2**-10, atol=1e-6)
+    relit = lab.relight(frame, lights=())
+    np.testing.assert_array_equal(relit["albedo"], frame["albedo"])
+
+
+def test_where_all_meshes_have_patterns_there_is_no_palette(lab):
+    tiled = patterned().meshes[-1]
+    assert "albedo" in lab.render(small_scenes.of(tiled), "ssao", size=SIZE).kept.large
+
+
+def test_of_surfaces_at_one_place_the_same_is_seen_with_and_without_a_palette(lab):
+    """A plain sheet within a tiled floor: each module sees the same of the two."""
+    tiled = patterned().meshes[-1]
+    sheet = Mesh(tiled.vertices, tiled.faces, material=replace(WHITE, base_color=COLORS["green"]))
+    for scene in (small_scenes.of(tiled, sheet), small_scenes.of(sheet, tiled)):
+        with_palette = lab.render(scene, "ssao", size=SIZE)
+        without = lab.render(scene, "ambient_transfer", size=SIZE)
+        assert "palette" in with_palette.kept.large
+        assert "palette" not in without.kept.large
+        np.testing.assert_array_equal(with_palette["albedo"], without["albedo"])
 
 
 def test_a_relit_frame_keeps_its_palette(lab):
