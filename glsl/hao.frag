@@ -5,12 +5,13 @@
 // Differences: Eq. 4 prints 1/n, with which an open hemisphere's weights would sum to 1/2; the sum of cosines is exact for a
 // closed cap. The small tiling noise texture is an integer hash of the place in the world and the normal.
 //
-// Inputs:  viewZ, viewNormal, facetNormal; kernel[i]: a unit direction around +z, and the offset of its first point in steps.
+// Inputs:  viewZ, viewNormal, facets; kernel[i]: a unit direction around +z, and the offset of its first point in steps.
 // Output:  visibility, in [0, 1].
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
 #include "lib/receiver.glsl"
+#include "lib/facets.glsl"
 #include "lib/wendland.glsl"
 #include "lib/hash.glsl"
 #include "occluders.glsl"
@@ -23,7 +24,6 @@ uniform float radius;            // d_max, scene units
 uniform float spread;            // half-angle of the cone, in right angles
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
-uniform sampler2D facetNormal;   // of the triangle, unit, view space
 
 out float visibility;
 
@@ -54,7 +54,7 @@ void main() {
     if (isBackground(centreZ)) return;
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
-    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec3 facet = facetAt(pixel, normal);
     float lift = lifted || isEdgeOn(facet, viewPos) ? liftOff(0.0, radius, viewPos, ray_from_pixel) : 0.0;
     Receiver receiver = receiverAt(pixel, viewPos + facet * lift, normal, facet, texel_size);
 

@@ -10,6 +10,7 @@
 
 #include "lib/space.glsl"
 #include "lib/receiver.glsl"
+#include "lib/facets.glsl"
 #include "lib/line.glsl"
 #include "occluders.glsl"
 
@@ -22,7 +23,6 @@ uniform float strength;
 uniform float scale;      // of the image's resolution
 uniform vec3 line_start;  // of lib/line.glsl
 uniform vec4 ray_from_pixel;
-uniform sampler2D facetNormal;  // of the triangle, unit, view space
 
 out float visibility;
 
@@ -42,7 +42,7 @@ void main() {
     visibility = 1.0;
     if (isBackground(centreZ)) return;
 
-    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec3 normal = texelFetch(viewNormal, pixel, 0).xyz, facet = facetAt(pixel, normal);
     vec3 surfacePos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     // the depths of peeled layers are as fine as the image: at a lower resolution, pixels' centres are not their centres
     float lift = scale < 1.0 ? liftOff(bias * radius, radius, surfacePos, ray_from_pixel) : bias * radius;

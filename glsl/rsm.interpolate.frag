@@ -1,18 +1,18 @@
 // The bounce at full size from one at low size, where that agrees: Dachsbacher and Stamminger 2005, section 4.
 // Of the four nearest small pixels, those with a similar normal and a point on the same plane count, bilinearly. If fewer
 // than three do, a is 0, and rsm.complete.frag gathers for this pixel.
-// Inputs: viewZ, viewNormal, facetNormal at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
+// Inputs: viewZ, viewNormal, facets at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
 // Outputs: results, the sources at full size; a is whether they were interpolated.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/facets.glsl"
 #include "lib/sources.glsl"
 
 uniform sampler2D smallViewZ;
 uniform sampler2D smallNormal;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
-uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
 uniform vec4 small_ray_from_pixel;
 
@@ -29,7 +29,7 @@ void main() {
     ivec2 corner = ivec2(floor(smallPixel)), last = textureSize(smallViewZ, 0) - 1;
     vec2 part = smallPixel - vec2(corner);
     vec3 normal = texelFetch(viewNormal, pixel, 0).xyz;
-    vec3 facet = texelFetch(facetNormal, pixel, 0).xyz;
+    vec3 facet = facetAt(pixel, normal);
     vec2 upward = vec2(facet.z, normal.z);
     vec2 planeOffset = alongNormals(vec2(dot(facet.xy, ray), dot(normal.xy, ray)), upward, centreZ);
     float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);

@@ -12,10 +12,12 @@ import numpy as np
 from ..errors import GpuMemoryError, ParameterError, suggestion
 from . import context
 
-# name: (components, moderngl dtype); "f2", "f4": half and single floats; "f1": normalised bytes; "u4": whole numbers
+# name: (components, moderngl dtype); "f2", "f4": half and single floats; "f1", "nu2": bytes and 16 bits, from 0 to 1;
+# "u4": whole numbers
 FORMATS = {
     "R8": (1, "f1"),
     "RGBA8": (4, "f1"),
+    "RG16": (2, "nu2"),
     "R16F": (1, "f2"),
     "RG16F": (2, "f2"),
     "RGBA16F": (4, "f2"),
@@ -28,6 +30,7 @@ FORMATS = {
 # moderngl dtype: as it is stored, as `read` returns it
 _DTYPES = {
     "f1": (np.uint8, np.uint8),
+    "nu2": (np.uint16, np.uint16),
     "f2": (np.float16, np.float32),
     "f4": (np.float32, np.float32),
     "u4": (np.uint32, np.uint32),
@@ -162,7 +165,7 @@ def _depth_key(depth: Depth | None) -> tuple[int, ...]:
 
 
 def read(texture: moderngl.Texture, channels: int | None = None) -> np.ndarray:
-    """(H, W) or (H, W, channels), top row first; float32, or uint8 and uint32 for bytes and whole numbers."""
+    """(H, W) or (H, W, channels), top row first; float32, or the whole numbers as they are stored."""
     context.get()  # refuses the wrong thread
     dtype, returned = _DTYPES[texture.dtype]
     what = f"reading back a {texture.width}x{texture.height} texture"

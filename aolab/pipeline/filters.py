@@ -18,6 +18,7 @@ from ..modules.filters.base import MOST_SOURCES, over_sources, titled
 from ..scene.view import View, ray_scale_offset
 from .differing import differing
 from .pass_runner import Buffers, PassRunner
+from .surfaces import as_bindings
 from .tiles import Tiles
 
 Formats = Mapping[str, str]
@@ -112,7 +113,7 @@ def _upsample(
 def _common(filter: Filter, surfaces: Buffers, view: View) -> list[Bindings]:
     numbers = filter.numbers()
     return [
-        Bindings("the surfaces", surfaces),
+        as_bindings(surfaces),
         Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings(filter.label(), uniforms=numbers, constants=numbers),
     ]

@@ -30,7 +30,7 @@ Textures = Mapping[str, moderngl.Texture | np.ndarray]
 @dataclass(frozen=True, eq=False)
 class Later:
     """The buffers `names` of a frame that wait until one of them is read; `make` computes them all, and their passes'
-    milliseconds. The last `Later` of a frame computes all that is left; the others are short ways to a few buffers.
+    milliseconds. Of two with the same buffer, the first is the short way to it.
     """
 
     names: Sequence[str]
@@ -83,20 +83,20 @@ class Frame:
         """
         for name in names:
             self._check_name(name)
-        waiting = {*(names or self.buffers)} - self.made.keys() - self.derived.keys()
-        shortest = next((one for one in self.later if waiting and waiting <= {*one.names}), None)
-        if shortest is not None:
-            handed(self._compute)(shortest)
+        wanted = {*(names or self.buffers)} - self.derived.keys()
+        while waiting := wanted - self.made.keys():
+            handed(self._compute)(max(self.later, key=lambda one: len(waiting.intersection(one.names))))
         return self
 
     def _compute(self, one: Later) -> None:
-        """Compute the buffers of `one`; those before it in `later` are not needed any more."""
+        """Compute the buffers of `one`."""
         if one not in self.later:  # another thread was faster
             return
         start = perf_counter()
         with noting(self.notes):
             made, timings = one.make(self)
-        self.made, self.later = {**made, **self.made}, self.later[self.later.index(one) + 1 :]
+        self.made = {**made, **self.made}
+        self.later = [other for other in self.later if not self.made.keys() >= {*other.names}]
         for name, milliseconds in timings.items():
             self.timings[name] = self.timings.get(name, 0.0) + milliseconds
         self.frame_ms += (perf_counter() - start) * 1e3

@@ -19,7 +19,7 @@ from ..gl.program import Programs
 from ..gl.texture import DEPTH, Pool, Size, check_size, refuse_exhaustion
 from ..gl.thread import handed
 from ..modules import MODULES, Module, ModuleName, find
-from ..modules.buffers import BUFFERS, ON_DEMAND, REFLECTIVE
+from ..modules.buffers import BUFFERS, REFLECTIVE
 from ..modules.occluders.base import Occluders
 from ..modules.virtual_lights import VirtualLights
 from ..scene import clipping
@@ -254,8 +254,12 @@ class Lab:
         """The surface buffers at full size. Where a palette is enough, `palette` stands in the place of `albedo`."""
         formats = surface_formats(frame, asked)
         if palettes.is_enough(frame) and not self._programs.generation:  # an edited shader may read more
-            return self._palettes.surfaces(frame, formats, depth)
-        return frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth)
+            buffers = self._palettes.surfaces(frame, formats, depth)
+        else:
+            buffers = frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth)
+        if asked.buffers & {"facetNormal", "last_facetNormal"}:
+            buffers |= surfaces.facet_normals(frame.runner, buffers, frame.view)
+        return buffers
 
     def _frame(self, kept: SurfaceState, rasterizer: Rasterizer, display: Display) -> Frame:
         """A frame from kept surfaces. Its light, that of the rasterizer's scene, is computed when it is first read."""
@@ -282,9 +286,7 @@ class Lab:
             **asdict(display),
             "triangles": scene.triangles,
         }
-        shown = {**palettes.left_out(state.large), **state.estimate}  # their `albedo` waits
-        if not scene.is_smooth:
-            del shown["facetNormal"]  # it is viewNormal
+        shown = {**surfaces.shown(state.large), **state.estimate}
         result = Frame(
             shown,
             runner.timer.result(),
@@ -301,16 +303,15 @@ class Lab:
     def _later(
         self, state: SurfaceState, lights: Lights | None, display: Display, reflective: Iterable[str]
     ) -> list[Later]:
-        """The light: the picture alone, if a single pass draws it, and all buffers."""
+        """The light: the picture alone, if a single pass draws it, and all buffers of light. And stored surfaces."""
         module = state.frame.module
-        waits = ["albedo"] if "albedo" not in state.large else []
-        names = [*lighting.names(module), *reflective, *waits]
+        names = [*lighting.names(module), *reflective]
         later = [Later(names, partial(self._made, state, partial(self._lit, lights, display), "the light of a frame"))]
         if lighting.in_one_pass(module):
             picture = partial(self._picture, lights, display)
             later.insert(0, Later(["image"], partial(self._made, state, picture, "a picture")))
-        if waits:
-            later.insert(0, Later(waits, partial(self._made, state, self._albedo, "the albedo of a frame")))
+        for name, make in _stored(state).items():
+            later.append(Later([name], partial(self._made, state, make, f"the buffer '{name}' of a frame")))
         return later
 
     def _lights(self, state: SurfaceState) -> Lights:
@@ -355,10 +356,6 @@ class Lab:
         lend(result, self._pool, runner.lent)
         return buffers, runner.timer.result()
 
-    def _albedo(self, state: SurfaceState, _: Frame) -> Buffers:
-        """`albedo` of a frame with a palette."""
-        return palettes.albedo(state)
-
     def _picture(self, lights: Lights | None, display: Display, state: SurfaceState, _: Frame) -> Buffers:
         """The picture of a frame."""
         lights = lights or self._lights(state)
@@ -376,8 +373,6 @@ class Lab:
             buffers |= {**sender, **gathered, **lighting.bounced(runner, state.large, buffers, gathered, view)}
         if lights.reflective:
             buffers |= lights.reflective.buffers
-        if "albedo" not in state.large:
-            buffers |= palettes.albedo(state)
         sky = self._environments.of(lights.sky)
         buffers |= lighting.compose(runner, {**state.large, **state.estimate, **buffers}, sky, view, display)
         result.lit = Lit(lights, sending)
@@ -403,12 +398,25 @@ class Lab:
         return self._shadows[1]
 
 
+def _stored(state: SurfaceState) -> dict[str, Callable[[SurfaceState, Frame], Buffers]]:
+    """{name: its pass} of the buffers that the G-buffer stores in another form, and that nobody has asked for."""
+    passes: dict[str, Callable[[SurfaceState, Frame], Buffers]] = {}
+    if "albedo" not in state.large:
+        passes["albedo"] = lambda state, _: palettes.albedo(state)
+    if "facets" in state.large and "facetNormal" not in state.large:
+        passes["facetNormal"] = lambda state, _: surfaces.facet_normals(
+            state.frame.runner, state.large, state.frame.view
+        )
+    return passes
+
+
 def surface_formats(frame: FrameContext, asked: Asked) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
-    names = asked.buffers - {"facetNormal"}  # drawn if the scene needs it
+    names = asked.buffers - {"facetNormal", "facets"}  # the normals are made of the facets
+    names |= {"facets"} if frame.scene.is_smooth else set()
     names |= {"geometricNormal"} if frame.scene.bends_normals else set()
     names |= {"emission"} if frame.scene.emits else set()
-    return surfaces.G_BUFFER | {name: ON_DEMAND[name].format for name in ON_DEMAND if name in names}
+    return surfaces.G_BUFFER | {name: format for name, format in surfaces.BESIDES.items() if name in names}
 
 
 def occluders(frame: FrameContext, asked: Asked, large: Buffers) -> Occluders:

@@ -17,7 +17,7 @@ from .geometry import stored
 from .lighting import in_one_pass
 from .pass_runner import Buffers
 from .state import FrameContext, SurfaceState
-from .surfaces import PALETTE, as_bindings
+from .surfaces import as_bindings
 
 MOST = 2048  # meshes: half floats hold the whole numbers up to here
 
@@ -43,11 +43,6 @@ def albedo(state: SurfaceState) -> Buffers:
     view = state.frame.view
     given = [as_bindings(state.large), Bindings("the view", uniforms=view.uniforms, constants=view.constants)]
     return state.frame.runner.run(_ALBEDO, given, view.size, where=state.where)
-
-
-def left_out(buffers: Buffers) -> Buffers:
-    """The buffers without those of a palette."""
-    return {name: texture for name, texture in buffers.items() if name not in PALETTE}
 
 
 class Palettes:

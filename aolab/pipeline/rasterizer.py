@@ -15,7 +15,7 @@ from ..scene.scene import Scene
 from ..scene.view import Size, View, Viewpoint
 from .geometry import MESH_TEXTURES, MESH_UNIFORMS, Geometry, kinds_of
 from .pass_runner import FARTHEST, Buffers, PassRunner
-from .surfaces import G_BUFFER, g_buffer, with_facets
+from .surfaces import G_BUFFER, g_buffer
 
 
 class DepthTargets:
@@ -61,16 +61,12 @@ class Rasterizer:
         """
         step = g_buffer(name, self._needed(formats), atlas=len(views) > 1)
         with raw.depth_up_to(FARTHEST):
-            return with_facets(self.triangles(step, views, depth=depth, skip_backs=True, only=only, onto=onto))
+            return self.triangles(step, views, depth=depth, skip_backs=True, only=only, onto=onto)
 
     def _needed(self, formats: Mapping[str, str]) -> Mapping[str, str]:
-        """The formats, and those of buffers that this scene needs besides.
-
-        They are the emission, if the surfaces' light is wanted and the scene has some, and the normals of triangles.
-        """
-        wanted = {"emission": "albedo" in formats and self.scene.emits}
-        wanted["facetNormal"] = "viewNormal" in formats and self.scene.is_smooth
-        return {**formats, **{name: ON_DEMAND[name].format for name in wanted if wanted[name]}}
+        """The formats, and that of the emission, if the surfaces' light is wanted and the scene has some."""
+        emits = "albedo" in formats and self.scene.emits
+        return {**formats, **({"emission": ON_DEMAND["emission"].format} if emits else {})}
 
     def peeled(
         self,
@@ -99,7 +95,7 @@ class Rasterizer:
         if drawn.samples == 0:
             self.runner.give_back(buffers)
             return None
-        return with_facets(buffers)
+        return buffers
 
     def draw(self, step: GeometryPass, view: View, bindings: Iterable[Bindings] = ()) -> Buffers:
         """The outputs of a geometry pass from its viewpoint; `view` is the camera's."""
@@ -132,8 +128,8 @@ class Rasterizer:
     ) -> Buffers:
         """Draw the triangles from each viewpoint into its region of the outputs; `depth` replaces a scratch one.
 
-        With `skip_backs`, backs that are hidden behind the fronts of their solid are left out. With `only`, other meshes
-        than these are left out. With `onto`, the triangles are added to these outputs of another pass and to its depth;
+        With `skip_backs`, backs that are hidden behind the fronts of their solid are left out. With `only`, just these
+        meshes are drawn. With `onto`, the triangles are added to these outputs of another pass and to its depth. Then
         further outputs are unspecified where none of the triangles is.
         """
         gl, runner, size = context.get(), self.runner, viewpoints[0].sheet

@@ -10,7 +10,9 @@ from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
 
 G_BUFFER = {name: buffer.format for name, buffer in SURFACES.items()}
-PALETTE = "palette", "patterns"  # in the place of `albedo`: see palettes.py
+# drawn besides, where they are needed
+BESIDES = {**{name: buffer.format for name, buffer in ON_DEMAND.items()}, "facets": "RG16"}
+STORED = "palette", "patterns", "facets"  # in the place of `albedo` (see palettes.py) and of `facetNormal`
 # off the screen, where nothing is known, the depth is the background's: nothing blocks
 _OUTSIDE = {"viewZ": BACKGROUND_Z}
 
@@ -21,6 +23,7 @@ _SHRINK = Pass(
     writes={"smallViewZ": "viewZ", "smallNormal": "viewNormal", "smallAlbedo": "albedo"},
     outside=_OUTSIDE,
 )
+_FACETS = Pass("facets", "pipeline/facets.frag", {"facetNormal": BESIDES["facetNormal"]})
 
 
 def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = False, atlas: bool = False) -> GeometryPass:
@@ -33,12 +36,12 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
         name,
         "pipeline/gbuffer.frag",
         formats,
-        constants={"peel": peel, **{f"with_{name}": name in formats for name in ON_DEMAND}},
+        constants={"peel": peel, **{f"with_{name}": name in formats for name in BESIDES}},
         writes={
             "surfaceViewZ": "viewZ",
             "surfaceNormal": "viewNormal",
             "surfaceAlbedo": "albedo",
-            **{f"surface{name[0].upper()}{name[1:]}": name for name in ON_DEMAND},
+            **{f"surface{name[0].upper()}{name[1:]}": name for name in BESIDES},
         },
         outside={} if atlas else _OUTSIDE,
         clear=_OUTSIDE,
@@ -47,7 +50,12 @@ def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = Fals
 
 def as_bindings(buffers: Buffers) -> Bindings:
     """The surface buffers, for the passes that read them; see glsl/lib/surface.glsl."""
-    return Bindings("the surfaces", buffers, constants={f"has_{name}": name in buffers for name in PALETTE})
+    return Bindings("the surfaces", buffers, constants={f"has_{name}": name in buffers for name in STORED})
+
+
+def shown(buffers: Buffers) -> Buffers:
+    """The buffers that a frame shows: those that are stored in another form wait until they are read."""
+    return {name: texture for name, texture in buffers.items() if name not in STORED}
 
 
 def facing(surfaces: Buffers, normals: str) -> Buffers:
@@ -57,28 +65,28 @@ def facing(surfaces: Buffers, normals: str) -> Buffers:
     return surfaces
 
 
-def with_facets(buffers: Buffers) -> Buffers:
-    """The surface buffers, with the normals of their triangles: the surfaces' own where the scene has no others."""
-    if "viewNormal" in buffers:
-        buffers.setdefault("facetNormal", buffers["viewNormal"])
-    return buffers
+def facet_normals(runner: PassRunner, buffers: Buffers, view: View) -> Buffers:
+    """`facetNormal`, the normals of the triangles: the surfaces' own where the scene has no others."""
+    if "facets" not in buffers:
+        return {"facetNormal": buffers["viewNormal"]}
+    given = [as_bindings(buffers), Bindings("the view", uniforms=view.uniforms, constants=view.constants)]
+    return runner.run(_FACETS, given, view.size)
 
 
 def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buffers:
     """The surface buffers at the size of `small`, from those at the size of `view`."""
     rays = {"small_ray_from_pixel": ray_scale_offset(small.camera, small.size)}
     bindings = [
-        Bindings("the surfaces", buffers),
+        as_bindings(buffers),
         Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the small view", uniforms=rays),
     ]
     result = runner.run(_SHRINK, bindings, small.size)
-    drawn = [name for name in buffers if buffers[name] is not buffers["viewNormal"]]
-    others = {name: ON_DEMAND[name].format for name in drawn if name in ON_DEMAND}
+    others = {name: BESIDES[name] for name in buffers if name in BESIDES}
     names = list(others)
     for start in range(0, len(names), MOST_SOURCES):
         some = {name: others[name] for name in names[start : start + MOST_SOURCES]}
         step = over_sources("shrink", "pipeline/shrink_sources.frag", some)
         sources = {f"source{number}": buffers[name] for number, name in enumerate(some)}
         result |= runner.run(step, [*bindings[1:], Bindings("the sources", sources)], small.size)
-    return with_facets(result)
+    return result

@@ -6,6 +6,7 @@
 
 #include "lib/space.glsl"
 #include "lib/receiver.glsl"
+#include "lib/facets.glsl"
 #include "occluders.glsl"
 
 const int directions;
@@ -16,7 +17,6 @@ uniform float bias;       // radii
 uniform float thickness;  // radii
 uniform vec4 kernel[directions];
 uniform vec4 ray_from_pixel;
-uniform sampler2D facetNormal;  // of the triangle, unit, view space
 
 const float OPEN = 2.0;   // larger than any share of a reach
 
@@ -27,7 +27,7 @@ bool receiverHere(out Receiver receiver, float reach) {
     float centreZ = texture(viewZ, uv).r;
     if (isBackground(centreZ)) return false;
     vec3 normal = texture(viewNormal, uv).xyz;
-    vec3 facet = texture(facetNormal, uv).xyz;
+    vec3 facet = facetAt(uv, normal);
     vec3 viewPos = viewPosAt(gl_FragCoord.xy, centreZ, ray_from_pixel);
     viewPos += facet * liftOff(bias * radius, reach, viewPos, ray_from_pixel);
 #ifdef RECEIVER_ON_RELIEF

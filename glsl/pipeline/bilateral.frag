@@ -2,17 +2,17 @@
 // tangent plane and by the normal. The window is 9 wide with half weights at its ends: symmetric, and still every set of
 // the 4×4 interleaved pattern is counted equally, so that the pattern cancels on a plane.
 // S3HO (2012): "geometry-aware 8×8 bilateral (weights: distance and normal)".
-// Inputs: sources (lib/sources.glsl), viewZ, viewNormal, facetNormal. Outputs: results, the sources filtered.
+// Inputs: sources (lib/sources.glsl), viewZ, viewNormal, facets. Outputs: results, the sources filtered.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/facets.glsl"
 #include "lib/sources.glsl"
 
 const bool vertical;
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
-uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
 uniform vec2 texel_size;
 
@@ -28,7 +28,7 @@ void main() {
 
     vec3 normal = texture(viewNormal, uv).xyz;
     vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
-    vec3 facet = texture(facetNormal, uv).xyz;
+    vec3 facet = facetAt(uv, normal);
     vec2 dotRay = vec2(dot(facet.xy, ray), dot(normal.xy, ray));
     vec2 upward = vec2(facet.z, normal.z);
     vec2 planeOffset = alongNormals(dotRay, upward, centreZ);

@@ -1,16 +1,16 @@
 // The mean over 4 pixels in a row or column that lie on the same surface; twice, it is the mean over 4×4: every set of
 // the interleaved pattern once (Umenhoffer et al. 2009, section 4.2).
-// Inputs: sources (lib/sources.glsl), viewZ, viewNormal, facetNormal. Outputs: results, the sources filtered, on an even window: moved by half a pixel.
+// Inputs: sources (lib/sources.glsl), viewZ, viewNormal, facets. Outputs: results, the sources filtered, on an even window: moved by half a pixel.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/facets.glsl"
 #include "lib/sources.glsl"
 
 const bool vertical;
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
-uniform sampler2D facetNormal;
 uniform vec4 ray_from_pixel;
 uniform vec2 texel_size;
 
@@ -28,7 +28,7 @@ void main() {
 
     vec3 normal = texture(viewNormal, uv).xyz;
     vec2 ray = viewPosAt(gl_FragCoord.xy, -1.0, ray_from_pixel).xy;
-    vec3 facet = texture(facetNormal, uv).xyz;
+    vec3 facet = facetAt(uv, normal);
     vec2 dotRay = vec2(dot(facet.xy, ray), dot(normal.xy, ray));
     vec2 upward = vec2(facet.z, normal.z);
     vec2 planeOffset = alongNormals(dotRay, upward, centreZ);

@@ -5,7 +5,7 @@
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
-//            surfaceFacetNormal  unit view-space normal of the triangle, on the side of surfaceNormal (RGBA16F, w 0)
+//            surfaceFacets   the normal of the triangle, on the side of surfaceNormal, in an octahedral map around +z (RG16)
 //            surfaceBaked    visibility that is baked into the vertices, 1 where none is (R16F)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 //            surfaceGeometricNormal  surfaceNormal without normal and height maps (RGBA16F)
@@ -14,7 +14,7 @@
 
 #include "lib/space.glsl"
 
-const bool with_facetNormal;
+const bool with_facets;
 const bool with_uv;
 const bool with_tangent;
 const bool with_emission;
@@ -29,6 +29,7 @@ const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's 
 
 #include "lib/base_color.glsl"
 #include "lib/relief.glsl"
+#include "lib/octahedral.glsl"
 
 uniform sampler2D nearerZ;
 uniform sampler2D emission_texture;
@@ -55,7 +56,7 @@ flat in float instance;
 out float surfaceViewZ;
 out vec4 surfaceNormal;
 out vec4 surfaceAlbedo;
-out vec4 surfaceFacetNormal;
+out vec2 surfaceFacets;
 out vec2 surfaceUv;
 out vec4 surfaceTangent;
 out vec4 surfaceEmission;
@@ -127,10 +128,10 @@ void main() {
         if (with_reliefV) surfaceReliefV = vec4(0.0);
     }
     surfaceAlbedo = vec4(clamp(base.rgb, 0.0, 1.0), 1.0);
-    if (with_facetNormal) {
+    if (with_facets) {
         // derivatives over a pixel are rounded, in a large triangle: those of a flat mesh are not needed
         vec3 facet = is_smooth ? normalize(faceNormal) : side * normal;
-        surfaceFacetNormal = vec4(faceforward(facet, -surfaceNormal.xyz, facet), 0.0);
+        surfaceFacets = octahedralUv(faceforward(facet, -surfaceNormal.xyz, facet).xzy);
     }
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);

@@ -1,14 +1,14 @@
 // A smaller G-buffer: the nearest pixel's surface, seen through the centre of the small pixel.
 // The depth follows the surface's tangent plane from the one centre to the other, so that a plane stays one.
-// Inputs: viewZ, viewNormal, facetNormal, albedo at full size. Outputs: smallViewZ (R32F), smallNormal, smallAlbedo (RGBA16F).
+// Inputs: viewZ, viewNormal, facets, albedo at full size. Outputs: smallViewZ (R32F), smallNormal, smallAlbedo (RGBA16F).
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/facets.glsl"
 #include "lib/shrink.glsl"
 
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
-uniform sampler2D facetNormal;
 uniform sampler2D albedo;
 uniform vec4 ray_from_pixel;         // of the full size
 uniform vec4 small_ray_from_pixel;
@@ -25,7 +25,7 @@ void main() {
     smallAlbedo = texelFetch(albedo, nearest, 0);
     if (isBackground(smallViewZ)) return;
     vec2 nearestRay = viewPosAt(vec2(nearest) + 0.5, -1.0, ray_from_pixel).xy;
-    vec3 facet = texelFetch(facetNormal, nearest, 0).xyz;
+    vec3 facet = facetAt(nearest, smallNormal.xyz);
     // near a silhouette the plane is seen edge-on and would lead far away: at most 2 % are followed
     if (orthographic) {
         float limit = 0.02 * COT_22_5 * -ray_from_pixel.w;

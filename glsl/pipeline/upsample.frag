@@ -1,17 +1,17 @@
 // Joint bilateral upsampling (Kopf et al. 2007): the four nearest small pixels, weighted as in bilinear interpolation, and
 // by whether they lie on the same surface as the full-size pixel. Where none does, the one nearest in depth is taken.
-// Inputs: viewZ, viewNormal, facetNormal at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
+// Inputs: viewZ, viewNormal, facets at full size; smallViewZ, smallNormal, sources (lib/sources.glsl) at small size.
 // Outputs: results, the sources at full size.
 
 #include "lib/space.glsl"
 #include "lib/filter.glsl"
+#include "lib/facets.glsl"
 #include "lib/sources.glsl"
 
 uniform sampler2D smallViewZ;
 uniform sampler2D smallNormal;
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
-uniform sampler2D facetNormal;
 uniform vec2 texel_size;
 uniform vec4 ray_from_pixel;
 uniform vec4 small_ray_from_pixel;
@@ -30,7 +30,7 @@ void main() {
     if (isBackground(centreZ)) return;
 
     vec3 normal = texture(viewNormal, uv).xyz;
-    vec3 facet = texture(facetNormal, uv).xyz;
+    vec3 facet = facetAt(uv, normal);
     vec2 upward = vec2(facet.z, normal.z);
     vec2 planeOffset = alongNormals(vec2(dot(facet.xy, ray), dot(normal.xy, ray)), upward, centreZ);
     float tolerance = planeTolerance(centreZ, -ray_from_pixel.w);

@@ -73,6 +73,34 @@ def test_normals_of_triangles_are_drawn_where_they_differ(lab):
     assert np.abs(facets @ known.T).max(axis=1).min() > 0.999
 
 
+def test_a_shader_may_sample_the_normals_of_triangles(lab, tmp_path):
+    path = tmp_path / "facing.frag"
+    path.write_text(
+        "uniform sampler2D facetNormal;\nout float visibility;\n"
+        "void main() { visibility = texelFetch(facetNormal, ivec2(gl_FragCoord.xy), 0).z; }\n"
+    )
+
+    class Facing(aolab.SSAO):
+        shader = path
+
+    for scene in (small_scenes.of(tetrahedron()), small_scenes.of(small_scenes.box((-1, 0, -1), (1, 1, 1)))):
+        for scale in (1.0, 0.5):
+            frame = lab.render(scene, Facing(filter="none", scale=scale), size=SIZE)
+            facets = frame["facetNormal" if scene.is_smooth else "viewNormal"]
+            if scale == 1:
+                np.testing.assert_array_equal(frame["visibility"][frame.mask], facets[frame.mask][:, 2])
+            known = np.unique(facets[frame.mask][:, 2].round(2))
+            assert np.isin(frame["visibility_raw"][np.isfinite(frame["visibility_raw"])].round(2), [0, *known]).all()
+
+
+def test_normals_of_triangles_are_made_when_they_are_read(lab):
+    frame = lab.render(small_scenes.of(tetrahedron()), "ssao", size=SIZE)
+    assert frame["image"].any()
+    assert "facetNormal" not in frame.made
+    assert not frame["facetNormal"][~frame.mask].any()
+    assert "direct" not in frame.made
+
+
 def test_a_mesh_is_smooth_if_its_normals_are_not_its_triangles():
     assert not small_scenes.box((0, 0, 0), (1, 1, 1)).is_smooth
     turned = trimesh.creation.box().apply_transform(trimesh.transformations.euler_matrix(0.1, 0.5, 0.8))

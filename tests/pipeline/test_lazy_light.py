@@ -35,8 +35,10 @@ def test_reading_visibility_lights_nothing(lab, boxes):
     assert set(frame.timings) >= LIGHT
     assert frame.frame_ms >= before + sum(frame.timings[name] for name in LIGHT)
     passes = dict(frame.timings)
-    frame.image, frame.complete()
+    frame.image, frame["direct"]
     assert frame.timings == passes  # computed once
+    frame.complete()
+    assert set(frame.timings) - set(passes) == {"albedo"}  # no part of the light
 
 
 OTHERS = [aolab.Environment(np.full((4, 8, 3), radiance)) for radiance in (0.5, 1.0, 2.0)]

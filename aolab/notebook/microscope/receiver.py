@@ -10,6 +10,7 @@ import numpy as np
 
 from ...gl.texture import Size
 from ...modules.occluders import Height
+from ...scene.prefiltered import octahedral_direction
 from .inputs import F, Inputs
 
 Texel = tuple[int, int]  # column and row of a texel, from the top left
@@ -40,9 +41,14 @@ def receiver_at(seen: Inputs, texel: Texel) -> Receiver:
     pixel = np.array([F(x) + F(0.5), F(y) + F(0.5)], F)
     surface = position_at(seen, pixel, F(seen["viewZ"][row, column]))
     normal = seen["viewNormal"][row, column, :3].astype(F)
-    facet = seen["facetNormal"][row, column, :3].astype(F) if "facetNormal" in seen.textures else normal
+    facet = _facet(seen["facets"][row, column]) if "facets" in seen.textures else normal
     number = _interleaved_set(x, y)
     return Receiver(texel, pixel, surface, surface, normal, facet, number, _interleaved_frame(normal, number))
+
+
+def _facet(stored: np.ndarray) -> np.ndarray:
+    """`facetFrom` of glsl/lib/facets.glsl, from the whole numbers of its texture."""
+    return octahedral_direction(stored / F(65535))[[0, 2, 1]].astype(F)
 
 
 def lifted(receiver: Receiver, height: np.floating) -> Receiver:
