@@ -5,7 +5,7 @@ import re
 import struct
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -153,6 +153,7 @@ class Programs:
         self._declared: dict[tuple[object, ...], list[str]] = {}  # constants
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
+        self.readings = 0  # grows whenever the texts of shaders are read anew
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
         self._in_text: dict[object, Declared] = {}
 
@@ -186,7 +187,7 @@ class Programs:
             others = frozenset(optional), geometry, name, offered()
             return self._keep(_compile(Request(vertex, fragment, constants, aliases, wanted, *others)))
         except ShaderError:
-            self._in_text.clear()  # the mended file may have other includes
+            self._forget_texts()  # the mended file may have other includes
             raise
 
     def declared(self, shader: str | Path, aliases: Mapping[str, str] = MappingProxyType({})) -> Declared:
@@ -206,7 +207,7 @@ class Programs:
         for key in stale:
             del self._programs[key]
         if stale:
-            self._in_text.clear()
+            self._forget_texts()
             self.generation += 1
 
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
@@ -221,15 +222,17 @@ class Programs:
         self._told = stamps
         fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
         self._told = {}
-        if stale:
-            self._in_text.clear()
         for key in stale:
             del self._programs[key]
         for program in fresh:
             self._keep(program)
         self.generation += bool(fresh)
-        self._in_text.clear()
+        self._forget_texts()
         return sorted({program.name for program in fresh})
+
+    def _forget_texts(self) -> None:
+        self._in_text.clear()
+        self.readings += 1
 
     def _key(self, sources: tuple[object, ...], constants: Mapping[str, Constant]) -> tuple[object, ...]:
         return sources, *map(constants.get, self._declared[sources])
