@@ -5,7 +5,7 @@ import re
 import struct
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 from types import MappingProxyType
@@ -40,6 +40,7 @@ class Program:
     uniforms: dict[str, moderngl.Uniform] = field(init=False)
     samplers: list[str] = field(init=False)
     _values: dict[str, moderngl.Uniform] = field(init=False)
+    _last: dict[str, object] = field(init=False, default_factory=dict)  # the values that the uniforms have
     fullscreen: moderngl.VertexArray | None = None
     seconds_a_pixel: float = 0.0  # of its last draw by a software renderer; 0 before
 
@@ -58,7 +59,7 @@ class Program:
         """Set every uniform that is not a sampler from `values`. Raises `ShaderError` for a uniform without a value, or
         of another type than its value. `words` are values that no shader can take.
         """
-        for name, uniform in self._values.items():
+        for name in self._values:
             if name in words:
                 raise ShaderError(
                     f"{self.name}: uniform '{name}' is {words[name]!r} in Python, which no shader can take; give the "
@@ -66,19 +67,31 @@ class Program:
                 )
             if name not in values:
                 raise ShaderError(f"{self.name}: uniform '{name}' is given by nothing{suggestion(name, values)}")
-            value = values[name]
-            try:
-                if isinstance(value, bytes):
-                    # GLSL drops the unused tail of an array; so do we
-                    uniform.write(value[: uniform.array_length * uniform.dimension * 4])
-                else:
-                    uniform.value = value
-            except (struct.error, TypeError, ValueError, moderngl.Error):
-                raise ShaderError(f"{self.name}: {_mismatch(name, uniform, value)}") from None
+            self.write(name, values[name])
+
+    def write(self, name: str, value: object) -> None:
+        """Set one uniform, unless it has this very value already. All uniforms are set here, samplers by their unit."""
+        if name in self._last and self._last[name] is value:
+            return
+        uniform = self.uniforms[name]
+        self._last.pop(name, None)
+        try:
+            if isinstance(value, bytes):
+                # GLSL drops the unused tail of an array; so do we
+                uniform.write(value[: uniform.array_length * uniform.dimension * 4])
+            else:
+                uniform.value = value
+        except (struct.error, TypeError, ValueError, moderngl.Error):
+            raise ShaderError(f"{self.name}: {_mismatch(name, uniform, value)}") from None
+        if isinstance(value, _IMMUTABLE):
+            self._last[name] = value
 
     def changed(self) -> bool:
         """Whether a file of this program was written since it was compiled."""
         return any(_stamp(path) != stamp for path, stamp in self.files.items())
+
+
+_IMMUTABLE = bool, int, float, bytes, tuple  # values that stay as they are while they are the same object
 
 
 # GL_SAMPLER_: 2D, 3D, CUBE, 2D_SHADOW, 2D_ARRAY, 2D_ARRAY_SHADOW, and INT_ and UNSIGNED_INT_ forms of 2D and 2D_ARRAY
@@ -132,18 +145,15 @@ class Request:
     name: str = "inline"
     offered: Mapping[str, str] = field(default_factory=dict)
 
-    @property
-    def sources(self) -> tuple[object, ...]:
-        return self.vertex, self.geometry, self.fragment, tuple(sorted(self.aliases.items())), self.outputs
-
 
 class Programs:
     """The programs of a Lab, by their sources and by the constants that these declare."""
 
     def __init__(self) -> None:
-        self._declared: dict[tuple[object, ...], frozenset[str]] = {}
+        self._declared: dict[tuple[object, ...], list[str]] = {}  # constants
         self._programs: dict[tuple[object, ...], Program] = {}
         self.generation = 0  # grows with every reload
+        self.readings = 0  # grows whenever the texts of shaders are read anew
         self._told: dict[Path, int] = {}  # the files of a reload that failed, as they were
         self._in_text: dict[object, Declared] = {}
 
@@ -169,14 +179,15 @@ class Programs:
         in messages; `offered` returns the declarations of all names that the shader may declare.
         """
         wanted = None if outputs is None else tuple(outputs)
-        others = wanted, frozenset(optional), geometry, name
-        request = Request(vertex, fragment, constants or {}, aliases or {}, *others)
-        if request.sources in self._declared and (key := self._key(request)) in self._programs:
+        constants, aliases = constants or {}, aliases or {}
+        sources = _sources(vertex, geometry, fragment, aliases, wanted)
+        if sources in self._declared and (key := self._key(sources, constants)) in self._programs:
             return self._programs[key]
         try:
-            return self._keep(_compile(replace(request, offered=offered())))
+            others = frozenset(optional), geometry, name, offered()
+            return self._keep(_compile(Request(vertex, fragment, constants, aliases, wanted, *others)))
         except ShaderError:
-            self._in_text.clear()  # the mended file may have other includes
+            self._forget_texts()  # the mended file may have other includes
             raise
 
     def declared(self, shader: str | Path, aliases: Mapping[str, str] = MappingProxyType({})) -> Declared:
@@ -196,7 +207,7 @@ class Programs:
         for key in stale:
             del self._programs[key]
         if stale:
-            self._in_text.clear()
+            self._forget_texts()
             self.generation += 1
 
     def reload(self, only_changed: bool = False, tell_again: bool = True) -> list[str]:
@@ -211,25 +222,34 @@ class Programs:
         self._told = stamps
         fresh = [_compile(program.request) for program in stale.values()]  # all of them, before any is replaced
         self._told = {}
-        if stale:
-            self._in_text.clear()
         for key in stale:
             del self._programs[key]
         for program in fresh:
             self._keep(program)
         self.generation += bool(fresh)
-        self._in_text.clear()
+        self._forget_texts()
         return sorted({program.name for program in fresh})
 
-    def _key(self, request: Request) -> tuple[object, ...]:
-        declared = self._declared[request.sources]
-        used = sorted((name, value) for name, value in request.constants.items() if name in declared)
-        return *request.sources, *used
+    def _forget_texts(self) -> None:
+        self._in_text.clear()
+        self.readings += 1
+
+    def _key(self, sources: tuple[object, ...], constants: Mapping[str, Constant]) -> tuple[object, ...]:
+        return sources, *map(constants.get, self._declared[sources])
 
     def _keep(self, program: Program) -> Program:
-        self._declared[program.request.sources] = frozenset(program.constants)
-        self._programs[self._key(program.request)] = program
+        request = program.request
+        sources = _sources(request.vertex, request.geometry, request.fragment, request.aliases, request.outputs)
+        self._declared[sources] = sorted(program.constants)
+        self._programs[self._key(sources, request.constants)] = program
         return program
+
+
+def _sources(
+    vertex: str, geometry: str, fragment: str | Path, aliases: Mapping[str, str], outputs: tuple[str, ...] | None
+) -> tuple[object, ...]:
+    """The part of a program's key that does not depend on constants."""
+    return vertex, geometry, fragment, frozenset(aliases.items()), outputs
 
 
 def _compile(request: Request) -> Program:

@@ -113,6 +113,7 @@ class Pool:
         self._even: dict[tuple[Size, str, float], moderngl.Texture] = {}
         self._free: dict[tuple[Size, str], list[moderngl.Texture]] = defaultdict(list)
         self._framebuffers: dict[tuple[int, ...], moderngl.Framebuffer] = {}
+        self._borders: dict[float, moderngl.Sampler] = {}
 
     def take(self, size: Size, format: str, border: float | None = None) -> moderngl.Texture:
         """A texture of unspecified content; beyond its edge, samplers read `border`, or the nearest texel for None."""
@@ -146,6 +147,15 @@ class Pool:
         if key not in self._framebuffers:
             self._framebuffers[key] = attach(textures, depth)
         return self._framebuffers[key]
+
+    def border(self, value: float) -> moderngl.Sampler:
+        """Reads `value` beyond the edge of a texture, and the nearest texel within."""
+        if value not in self._borders:
+            nearest = moderngl.NEAREST, moderngl.NEAREST
+            sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=nearest)
+            sampler.border_color = (value, value, value, value)
+            self._borders[value] = sampler
+        return self._borders[value]
 
     def trim(self, sizes: set[Size]) -> None:
         """Free what nobody holds and is of none of these sizes."""

@@ -12,7 +12,7 @@ from ..errors import ParameterError
 from ..gl.source import beside
 from ..scene.scene import Scene
 from .buffers import Buffer
-from .estimate import Estimate
+from .estimate import Estimate, passes_of
 from .filters import FILTERS, Filter
 from .names import check_outputs, check_parameters
 from .occluders import OCCLUDERS, OccluderKind
@@ -329,10 +329,7 @@ class Module(Parameters):
 
     def all_passes(self) -> list[Pass]:
         """Every pass of the estimate, the lighting and the bounce."""
-        found: list[Pass] = []
-        for step in [self.estimate(), *self.lighting(), *filter(None, [self.bounce()])]:
-            found += [*step.once, *step.passes] if isinstance(step, Estimate) else [step]
-        return found
+        return passes_of([self.estimate(), *self.lighting(), *filter(None, [self.bounce()])])
 
     def sends(self) -> bool:
         """Whether the shaders read the light or albedo of occluders; then hidden surfaces are drawn with theirs."""

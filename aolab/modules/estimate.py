@@ -1,6 +1,6 @@
 """Estimates: passes over sample sets whose outputs are averaged, filtered and brought to full size."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from .filters import Filter
@@ -23,3 +23,11 @@ class Estimate:
     filter: Filter | None = None
     scale: float | None = None
     decides: str = ""
+
+
+def passes_of(steps: Iterable[Pass | Estimate]) -> list[Pass]:
+    """Every pass of the steps, in order."""
+    found: list[Pass] = []
+    for step in steps:
+        found += [*step.once, *step.passes] if isinstance(step, Estimate) else [step]
+    return found

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Literal
 
@@ -36,7 +37,7 @@ class Pass:
     includes: Mapping[str, str] = field(default_factory=dict)
     background: Mapping[str, float] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def outs(self) -> dict[str, str]:
         """{buffer: `out` variable} of the outputs."""
         variables = {buffer: variable for variable, buffer in self.writes.items()}

@@ -36,7 +36,7 @@ def estimate(state: SurfaceState, what: Estimate, given: Iterable[Bindings] = ()
     small, large = (facing(state.small, "geometric"), state.small_view), (facing(state.large, "geometric"), frame.view)
     background = {name: value for step in what.passes for name, value in step.background.items()}
     decides = what.decides or (next(iter(what.outputs)) if len(what.outputs) == 1 else "")
-    result = filters.apply(runner, what.filter or frame.filter, raw, formats, small, large, background, decides)
+    result = filters.apply(runner, what.filter or frame.plan.filter, raw, formats, small, large, background, decides)
     return {**{f"{name}_raw": texture for name, texture in raw.items()}, **result}
 
 

@@ -205,7 +205,7 @@ class Geometry:
             textures.append(self._texture(material.normal_texture, None, colors=False))
         for name, value in values.items():
             if name in program.uniforms:  # a compiler may find that an edited shader does not need it
-                program.uniforms[name].value = value
+                program.write(name, value)
         for unit, texture in enumerate(textures):  # after all uploads, which use unit 0
             texture.use(unit)
 

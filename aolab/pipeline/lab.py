@@ -3,7 +3,7 @@
 import operator
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import asdict, replace
+from dataclasses import fields, replace
 from functools import partial
 from numbers import Real
 from time import perf_counter
@@ -30,7 +30,6 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from ..version import __version__
 from . import lighting, palettes, surfaces
-from .asked import all_asked
 from .doubts import doubts, is_own
 from .environments import EnvironmentMaps
 from .estimate import estimate
@@ -40,12 +39,13 @@ from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, Lit, ToneMap
 from .palettes import Palettes
 from .pass_runner import Buffers, PassRunner, Where
+from .plan import Asked, Plan
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
 from .reflective import ReflectiveMaps, draw_reflective
 from .senders import senders
 from .shadows import ShadowSettings, draw_shadows
-from .state import Asked, FrameContext, SurfaceState
+from .state import FrameContext, SurfaceState
 from .virtual_lights import VirtualLightMaps, draw_virtual_lights
 
 DEFAULT_SIZE = (1280, 720)
@@ -68,6 +68,7 @@ class Lab:
         self._environments, self._palettes, self._depth = EnvironmentMaps(), Palettes(), DepthTargets()
         self._shadows: tuple[tuple[object, ...], Bindings] | None = None
         self._seen: tuple[tuple[object, ...], View, str | None] | None = None
+        self._plan: tuple[tuple[object, ...], Plan, list[str]] | None = None
         self._virtual: dict[str, tuple[tuple[object, ...], VirtualLightMaps]] = {}
         self._sizes: set[Size] = set()
         self._waiting: WeakSet[Frame] = WeakSet()  # for their light
@@ -177,11 +178,11 @@ class Lab:
         camera = scene.camera if camera is None else camera
         if not isinstance(camera, Camera):
             raise ParameterError(f"camera = {camera!r:.80} is not an aolab.Camera")
-        module = module.resolved(scene)
+        plan = self._planned(module, scene)
         view, reason_of_cut = self._view(camera, scene, size)
         self._make_room({view.size, view.scaled(module.scale).size})
         rasterizer = self._rasterizer(scene, last_frame(last, view))
-        frame = FrameContext(rasterizer, module, view, range(seed, seed + frames))
+        frame = FrameContext(rasterizer, plan, view, range(seed, seed + frames))
         drawn = context.get().query(samples=True)
         result = self._frame(self._state(frame, drawn), frame.rasterizer, display)
         if not drawn.samples:
@@ -192,6 +193,22 @@ class Lab:
             for doubt in doubts(result, module.outputs):
                 notice(doubt)
         return result
+
+    def _planned(self, module: Module, scene: Scene) -> Plan:
+        """The plan of the module's frames, kept while module and scene stay the same, and the shaders' texts.
+
+        That of a user's own module, or choice, is made for each frame: its class may change between two of them.
+        """
+        key = module, scene, self._programs.readings
+        if self._plan is not None and self._plan[0] == key:
+            for note in self._plan[2]:
+                notice(note)
+            return self._plan[1]
+        notes: list[str] = []
+        with noting(notes):
+            plan = Plan(module.resolved(scene), self._programs.declared)
+        self._plan = None if plan.is_own else (key, plan, notes)
+        return plan
 
     def _view(self, camera: Camera, scene: Scene, size: Size) -> tuple[View, str | None]:
         """The camera's view, and the reason why its clip planes cut the scene, if they do.
@@ -235,7 +252,7 @@ class Lab:
 
     def _state(self, frame: FrameContext, drawn: moderngl.Query) -> SurfaceState:
         """The surfaces, whose pixels `drawn` counts, and the estimate of a module that does not depend on light."""
-        module, view, runner, asked = frame.module, frame.view, frame.runner, all_asked(frame)
+        module, view, runner, asked = frame.module, frame.view, frame.runner, frame.plan.asked
         with self._lending(runner):
             depth = runner.take(view.size, DEPTH)
             with drawn:
@@ -243,9 +260,9 @@ class Lab:
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
             hiding = occluders(frame, asked, large)
-            state = SurfaceState(frame, asked, large, small, small_view, hiding, {}, Where(depth))
+            state = SurfaceState(frame, large, small, small_view, hiding, {}, Where(depth))
             if not module.lit:
-                state = replace(state, estimate=estimate(state, module.estimate()))
+                state = replace(state, estimate=estimate(state, frame.plan.estimate))
             refuse_exhaustion(f"the surfaces of a frame of {view.size[0]}x{view.size[1]}")
         lent, runner.lent = runner.lent, []
         return lend(state, self._pool, lent)
@@ -265,25 +282,25 @@ class Lab:
         """A frame from kept surfaces. Its light, that of the rasterizer's scene, is computed when it is first read."""
         state = kept.under(rasterizer)
         frame, runner, scene = state.frame, rasterizer.runner, rasterizer.scene
-        module, view = frame.module, frame.view
+        plan, module, view = frame.plan, frame.module, frame.view
         with self._lending(runner):
-            reflective = REFLECTIVE if state.asked.reflective else ()
+            reflective = REFLECTIVE if plan.asked.reflective else ()
             lights = self._lights(state) if module.lit or reflective else None
             if module.lit and lights is not None:
-                state = replace(state, estimate=estimate(state, module.estimate(), lights.seen_from(view)))
+                state = replace(state, estimate=estimate(state, plan.estimate, lights.seen_from(view)))
             refuse_exhaustion(f"a frame of {view.size[0]}x{view.size[1]}")
         info = {
             "aolab": __version__,
             "renderer": context.renderer(),
             "scene": scene.source,
             "module": module.name or type(module).__name__,
-            "parameters": module.values(),
-            "question": asdict(module.question()),
-            "camera": asdict(view.camera),
+            "parameters": dict(plan.values),
+            "question": _fields(plan.question),
+            "camera": _fields(view.camera),
             "size": list(view.size),
             "seed": frame.seeds.start,
             "accumulate": len(frame.seeds),
-            **asdict(display),
+            **_fields(display),
             "triangles": scene.triangles,
         }
         shown = {**surfaces.shown(state.large), **state.estimate}
@@ -304,10 +321,10 @@ class Lab:
         self, state: SurfaceState, lights: Lights | None, display: Display, reflective: Iterable[str]
     ) -> list[Later]:
         """The light: the picture alone, if a single pass draws it, and all buffers of light. And stored surfaces."""
-        module = state.frame.module
-        names = [*lighting.names(module), *reflective]
+        plan = state.frame.plan
+        names = [*lighting.names(plan), *reflective]
         later = [Later(names, partial(self._made, state, partial(self._lit, lights, display), "the light of a frame"))]
-        if lighting.in_one_pass(module):
+        if lighting.in_one_pass(plan):
             picture = partial(self._picture, lights, display)
             later.insert(0, Later(["image"], partial(self._made, state, picture, "a picture")))
         for name, make in _stored(state).items():
@@ -321,9 +338,9 @@ class Lab:
         tables = self._environments.tables(scene.environment, module.tables())
         lamps = self._lamps(frame.rasterizer, ShadowSettings.of(module))
         reflective = None
-        if state.asked.reflective:
+        if frame.plan.asked.reflective:
             reflective = draw_reflective(frame.rasterizer, lamps, int(module.numbers().get("rsm_resolution", MAP_SIZE)))
-        steps = [step for step in module.lighting() if isinstance(step, VirtualLights)]
+        steps = [step for step in frame.plan.lighting if isinstance(step, VirtualLights)]
         virtual = {step.name: self._virtual_lights(frame, step, reflective) for step in steps}
         return Lights(lamps, scene.environment, tables, reflective, virtual)
 
@@ -366,7 +383,7 @@ class Lab:
         runner, view = state.frame.runner, state.frame.view
         lights = lights or self._lights(state)
         buffers, sending = lighting.light(state, lights), state
-        if bounce := state.frame.module.bounce():
+        if bounce := state.frame.plan.bounce:
             sender, sending = senders(state, buffers, lights)
             known = [Bindings("the lighting", {**buffers, **sender}), Bindings("the estimate", state.estimate)]
             gathered = estimate(sending, bounce, [*known, *lights.seen_from(view)])
@@ -422,8 +439,13 @@ def surface_formats(frame: FrameContext, asked: Asked) -> dict[str, str]:
 def occluders(frame: FrameContext, asked: Asked, large: Buffers) -> Occluders:
     """The occluders of the module's choice; nothing is drawn where no pass of the module includes "occluders.glsl"."""
     if not asked.occluders:
-        return Occluders(frame.occluders.bindings())
-    return frame.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
+        return Occluders(frame.plan.occluders.bindings())
+    return frame.plan.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
+
+
+def _fields(values: Any) -> dict[str, Any]:
+    """{name: value} of a dataclass whose values are no dataclasses; `asdict` would look into each."""
+    return {one.name: getattr(values, one.name) for one in fields(values)}
 
 
 def _as_scene(scene: Any) -> Scene:

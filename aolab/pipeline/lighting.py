@@ -8,7 +8,6 @@ import moderngl
 import numpy as np
 
 from ..gl.bindings import Bindings
-from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.estimate import Estimate
 from ..modules.passes import TERMS, Pass, reflect
@@ -19,6 +18,7 @@ from ..scene.scene import Scene
 from ..scene.view import View
 from .estimate import estimate, steps
 from .pass_runner import Buffers, PassRunner
+from .plan import Plan
 from .reflective import ReflectiveMaps
 from .shadows import ShadowMaps
 from .state import SurfaceState
@@ -123,10 +123,10 @@ def lamps(scene: Scene, shadows: ShadowMaps) -> Bindings:
     return Bindings("the lights", textures, uniforms, constants)
 
 
-def names(module: Module) -> list[str]:
+def names(plan: Plan) -> list[str]:
     """The buffers of the module's lighting, before they are computed."""
-    found = [name for step in module.lighting() for name in _outputs(step)]
-    if bounce := module.bounce():
+    found = [name for step in plan.lighting for name in _outputs(step)]
+    if bounce := plan.bounce:
         found += ["sender", *_outputs(bounce), "indirect"]
     return [*found, *_COMPOSE.outputs]
 
@@ -139,7 +139,7 @@ def light(state: SurfaceState, lights: Lights) -> Buffers:
     """`direct` and `ambient` radiance, and all other outputs of the module's lighting steps."""
     frame, lit = state.frame, {}
     shining = lights.seen_from(frame.view)
-    for step in frame.module.lighting():
+    for step in frame.plan.lighting:
         given = [Bindings("the estimate", state.estimate), *shining, Bindings("the lighting", lit)]
         if isinstance(step, Estimate):
             lit |= estimate(state.at_scale(step.scale), step, given)
@@ -168,17 +168,17 @@ def bounced(runner: PassRunner, surfaces: Buffers, lit: Buffers, bounce: Buffers
     return runner.run(reflect("bounce", "indirect", more), [Bindings("the bounce", known)], view.size)
 
 
-def in_one_pass(module: Module) -> bool:
+def in_one_pass(plan: Plan) -> bool:
     """Whether `image` draws the module's picture: all lighting steps are terms, which no bounce reads."""
-    return module.bounce() is None and all(
-        isinstance(step, Pass) and step.shader == TERMS.get(step.name) for step in module.lighting()
+    return plan.bounce is None and all(
+        isinstance(step, Pass) and step.shader == TERMS.get(step.name) for step in plan.lighting
     )
 
 
 def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display) -> Buffers:
     """`image` of a module for which `in_one_pass` is true: one pass over surfaces, one over the background."""
     frame = state.frame
-    terms = [step for step in frame.module.lighting() if isinstance(step, Pass)]
+    terms = [step for step in frame.plan.lighting if isinstance(step, Pass)]
     shown = _shown(environment, frame.view, display)
     given = [
         as_bindings(state.large),

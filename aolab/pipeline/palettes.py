@@ -11,7 +11,6 @@ from ..gl.texture import Depth, make
 from ..modules.buffers import SURFACES
 from ..modules.passes import TERMS, Pass
 from ..scene.scene import Scene
-from .asked import sampled
 from .doubts import is_own
 from .geometry import stored
 from .lighting import in_one_pass
@@ -33,9 +32,9 @@ def is_enough(frame: FrameContext) -> bool:
     scene, module = frame.scene, frame.module
     if len(scene.meshes) > MOST or all(mesh.is_patterned for mesh in scene.meshes):
         return False
-    if module.scale < 1 or is_own(module) or not in_one_pass(module):
+    if module.scale < 1 or is_own(module) or not in_one_pass(frame.plan):
         return False
-    return "albedo" not in sampled(frame, [step for step in module.all_passes() if step.shader not in TERMS.values()])
+    return "albedo" not in frame.plan.sampled(step for step in frame.plan.passes if step.shader not in TERMS.values())
 
 
 def albedo(state: SurfaceState) -> Buffers:

@@ -76,7 +76,6 @@ class PassRunner:
         self.programs, self.pool = programs, pool
         self.timer = Timer()
         self.lent: list[tuple[Size, str, moderngl.Texture]] = []
-        self._borders: dict[float, moderngl.Sampler] = {}
         self._held: list[Kept] = []  # of the pool's kept textures, those that this frame reads
 
     def take(self, size: Size, format: str, border: float | None = None) -> moderngl.Texture:
@@ -191,32 +190,23 @@ class PassRunner:
 
         `units` are samplers whose textures the caller binds, by unit.
         """
-        free = (unit for unit in range(len(program.samplers) + len(units)) if unit not in units.values())
+        most = len(program.samplers) + len(units)
+        context.get().clear_samplers(0, most)
+        free = (unit for unit in range(most) if unit not in units.values())
         for name in program.samplers:
-            unit = units[name] if name in units else next(free)
-            program.uniforms[name].value = unit
+            if name in units:
+                program.write(name, units[name])
+                continue
             buffer = reads.get(name, name)
-            border = None
-            if name not in units:
-                if buffer not in textures:
-                    raise ShaderError(
-                        f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, {*textures, *ON_DEMAND})}"
-                    )
-                textures[buffer].use(unit)
-                border = textures[buffer].extra
-            if border is None:
-                context.get().clear_samplers(unit, unit + 1)
-            else:
-                self._border(border).use(unit)
-
-    def _border(self, value: float) -> moderngl.Sampler:
-        """Reads `value` beyond the edge of a texture, and the nearest texel within."""
-        if value not in self._borders:
-            nearest = moderngl.NEAREST, moderngl.NEAREST
-            sampler = context.get().sampler(repeat_x=False, repeat_y=False, filter=nearest)
-            sampler.border_color = (value, value, value, value)
-            self._borders[value] = sampler
-        return self._borders[value]
+            if buffer not in textures:
+                raise ShaderError(
+                    f"{program.name}: no buffer '{buffer}' to sample{suggestion(buffer, {*textures, *ON_DEMAND})}"
+                )
+            unit, texture = next(free), textures[buffer]
+            program.write(name, unit)
+            texture.use(unit)
+            if texture.extra is not None:
+                self.pool.border(texture.extra).use(unit)
 
     def _vertices(self, program: Program) -> moderngl.VertexArray:
         """Vertices without input, numbered."""

@@ -2,6 +2,7 @@
 
 import weakref
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal
 
 import moderngl
@@ -28,7 +29,7 @@ class Reliefs:
     regions: np.ndarray
     wraps: np.ndarray
 
-    @property
+    @cached_property
     def uniforms(self) -> dict[str, object]:
         """The values of glsl/lib/relief.glsl."""
         return {

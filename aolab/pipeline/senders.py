@@ -6,13 +6,13 @@ from dataclasses import replace
 import moderngl
 
 from ..gl.bindings import Bindings
-from ..modules import Module
 from ..modules.buffers import LIT
 from ..modules.occluders.base import Hidden
 from ..modules.passes import AMBIENT, DIRECT, Pass
 from .estimate import steps
 from .lighting import Lights
 from .pass_runner import Buffers
+from .plan import Plan
 from .state import FrameContext, SurfaceState
 from .surfaces import as_bindings
 
@@ -30,7 +30,7 @@ def senders(state: SurfaceState, lit: Buffers, lights: Lights) -> tuple[Buffers,
     once: Buffers = {}
     if occluders.hidden:
         known = [as_bindings(state.large), frame.parameters, *lights.seen_from(view)]
-        once = steps(frame, frame.module.estimate().once, known)
+        once = steps(frame, frame.plan.estimate.once, known)
     given = Bindings("the passes before the samples", once)
     sent = {hidden.sender: _hidden_sender(frame, hidden, lights, given) for hidden in occluders.hidden}
     bound = replace(occluders.bindings, textures={**occluders.bindings.textures, **sent})
@@ -47,7 +47,7 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
     lights are left out. `given` are the textures that the estimate makes before its samples.
     """
     runner, size = frame.runner, hidden.views[0].sheet
-    passes = _passes(frame.module, "emission" in hidden.surfaces)
+    passes = _passes(frame.plan, "emission" in hidden.surfaces)
     surfaces = {"emission": hidden.surfaces["albedo"], **hidden.surfaces}  # samplers must be bound
     targets = [runner.targets(step, size) for step in passes]
     for view in hidden.views:
@@ -70,9 +70,9 @@ def _hidden_sender(frame: FrameContext, hidden: Hidden, lights: Lights, given: B
     return sender
 
 
-def _passes(module: Module, emits: bool) -> Sequence[Pass]:
+def _passes(plan: Plan, emits: bool) -> Sequence[Pass]:
     """The module's estimate, direct light, and the module's own ambient light; then the sum."""
-    ambient = [step for step in module.lighting() if isinstance(step, Pass) and "ambient" in step.outputs]
-    if "environment_vpl" in module.parts:  # whose lights are added up for the camera's view alone
+    ambient = [step for step in plan.lighting if isinstance(step, Pass) and "ambient" in step.outputs]
+    if "environment_vpl" in plan.module.parts:  # whose lights are added up for the camera's view alone
         ambient = [replace(AMBIENT, constants={"occluded": False})]
-    return [*module.estimate().passes, DIRECT, *ambient, _sender(emits)]
+    return [*plan.estimate.passes, DIRECT, *ambient, _sender(emits)]

@@ -3,27 +3,26 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from ..gl.bindings import Bindings, joined
+from ..gl.bindings import Bindings
 from ..modules import Module
-from ..modules.filters import Filter
-from ..modules.measures import Measure
-from ..modules.occluders.base import OccluderKind, Occluders
+from ..modules.occluders.base import Occluders
 from ..scene.scene import Scene
 from ..scene.view import View
 from .pass_runner import Buffers, PassRunner, Where
+from .plan import Plan
 from .rasterizer import Rasterizer
 from .surfaces import as_bindings, shrink
 
 
 @dataclass(frozen=True, eq=False)
 class FrameContext:
-    """The context of all passes of one frame: the means to draw, the module, the camera's view and the sample sets.
+    """The context of all passes of one frame: the means to draw, the module's plan, and the camera's view.
 
-    `seeds` are averaged over.
+    The sample sets of `seeds` are averaged over.
     """
 
     rasterizer: Rasterizer
-    module: Module
+    plan: Plan
     view: View
     seeds: range
 
@@ -41,46 +40,18 @@ class FrameContext:
         return self.rasterizer.last
 
     @property
-    def filter(self) -> Filter:
-        """The filter that the module has chosen."""
-        chosen = self.module.chosen("filter")
-        assert isinstance(chosen, Filter)
-        return chosen
-
-    @property
-    def occluders(self) -> OccluderKind:
-        """The occluder kind that the module has chosen."""
-        chosen = self.module.chosen("occluders")
-        assert isinstance(chosen, OccluderKind)
-        return chosen
+    def module(self) -> Module:
+        """The module, resolved."""
+        return self.plan.module
 
     @property
     def parameters(self) -> Bindings:
-        """The module's numbers, as uniforms and as constants, its vectors, and all that its measure gives."""
-        numbers, owner = self.module.numbers(), f"the parameters of {self.module.label()}"
-        words = {name: value for name, value in self.module.values().items() if isinstance(value, str)}
-        own = Bindings(owner, uniforms={**numbers, **self.module.vectors()}, constants=numbers, words=words)
-        if "measure" not in self.module.choices:
-            return own
-        measure = self.module.chosen("measure")
-        assert isinstance(measure, Measure)
-        both = joined([own, measure.bindings()], owner)
-        return Bindings(owner, both.textures, both.uniforms, both.constants, both.includes, both.words)
+        """The module's values."""
+        return self.plan.parameters
 
     def samples(self, seed: int) -> Bindings:
         """The sample set of one seed."""
-        return Bindings("the samples", uniforms=self.module.samples(seed))
-
-
-@dataclass(frozen=True)
-class Asked:
-    """All that the passes of a module and its occluder kind read: the `buffers` that they sample, whether some of these
-    belong to `reflective` shadow maps, and whether a pass includes "occluders.glsl".
-    """
-
-    buffers: frozenset[str]
-    occluders: bool
-    reflective: bool
+        return self.plan.samples(seed)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +63,6 @@ class SurfaceState:
     """
 
     frame: FrameContext
-    asked: Asked
     large: Buffers
     small: Buffers
     small_view: View

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import radians, tan
 
 import numpy as np
 
@@ -69,7 +70,7 @@ class Camera:
         They are those at distance 1 from a perspective camera, and at every distance from an orthographic one.
         """
         width, height = size
-        half = float(np.tan(np.radians(self.fov) / 2)) if self.ortho is None else self.ortho / 2
+        half = tan(radians(self.fov) / 2) if self.ortho is None else self.ortho / 2
         pixels = self._side(size)
         return half * width / pixels, half * height / pixels
 

@@ -167,7 +167,7 @@ class Environment:
         values, directions, solid_angles = averaged(self.radiance)
         return project(values.reshape(-1, 3), directions.reshape(-1, 3), solid_angles.ravel(), bands=4)
 
-    @property
+    @cached_property
     def irradiance_sh(self) -> np.ndarray:
         """(9, 3) float64: E(n) = Σ irradiance_sh[i] y_i(n), in the basis of `aolab.maths.harmonics`.
 

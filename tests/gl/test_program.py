@@ -9,7 +9,11 @@ import small_scenes
 
 import aolab
 from aolab import Lab, Module, ShaderError
+from aolab.gl.bindings import Bindings
 from aolab.gl.program import Programs
+from aolab.gl.texture import Pool, read
+from aolab.modules.passes import Pass
+from aolab.pipeline.pass_runner import PassRunner
 
 
 def write(path, text: str) -> None:
@@ -92,6 +96,40 @@ def test_programs_are_kept_by_the_constants_that_they_declare(gl):
     assert programs.get(text, {"n": 1, "other": 6}) is first
     assert programs.get(text, {"n": 2, "other": 5}) is not first
     assert programs.get(text, {"n": 1}) is first
+
+
+# --- values
+
+
+NUMBERS = "uniform vec2 pair;\nuniform int number;\nout vec4 color;\nvoid main() { color = vec4(pair, number, 1.0); }\n"
+
+
+def drawn(runner: PassRunner, **values: object) -> list[float]:
+    """The numbers that the program reads."""
+    made = runner.run(Pass("numbers", NUMBERS, {"color": "RGBA32F"}), [Bindings("the test", uniforms=values)], (1, 1))
+    return read(made["color"])[0, 0, :3].tolist()
+
+
+def test_every_draw_has_its_own_values(gl):
+    runner, first, second = PassRunner(Programs(), Pool()), (1.0, 2.0), (3.0, 4.0)
+    for pair, number in ((first, 5), (second, 5), (second, 6), (first, 5), (first, 5)):
+        assert drawn(runner, pair=pair, number=number) == [*pair, number]
+
+
+@pytest.mark.parametrize("values", [[1.0, 2.0], np.float32([1, 2])], ids=["list", "array"])
+def test_values_that_change_in_place_are_seen(gl, values):
+    runner = PassRunner(Programs(), Pool())
+    assert drawn(runner, pair=values, number=3) == [1, 2, 3]
+    values[0] = 9.0
+    assert drawn(runner, pair=values, number=3) == [9, 2, 3]
+
+
+def test_a_value_of_another_type_is_refused_where_an_equal_one_was_taken(gl):
+    runner = PassRunner(Programs(), Pool())
+    drawn(runner, pair=(1.0, 2.0), number=3)
+    with pytest.raises(ShaderError, match="'number' is int in the shader, and float in Python"):
+        drawn(runner, pair=(1.0, 2.0), number=3.0)
+    assert drawn(runner, pair=(1.0, 2.0), number=3) == [1, 2, 3]
 
 
 # --- reload

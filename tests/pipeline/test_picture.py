@@ -8,8 +8,10 @@ import small_scenes
 
 import aolab
 from aolab import Camera, Environment, Instance
-from aolab.modules import MODULES
+from aolab.gl.program import Programs
+from aolab.modules import MODULES, Module
 from aolab.pipeline.lighting import in_one_pass
+from aolab.pipeline.plan import Plan
 
 SIZE = (48, 32)
 LAMPS = (
@@ -35,6 +37,10 @@ def scene(camera: Camera | None = None) -> aolab.Scene:
     return lit.replace(instances=(*others, Instance(glowing)), environment=Environment.sky())
 
 
+def plan(module: Module) -> Plan:
+    return Plan(module, Programs().declared)
+
+
 def check(frame: aolab.Frame, plain: aolab.Frame) -> None:
     """The compilers may round the two differently: at most a code of 255 apart."""
     picture = frame.image
@@ -49,7 +55,7 @@ def check(frame: aolab.Frame, plain: aolab.Frame) -> None:
 @pytest.mark.parametrize(("name", "options"), OPTIONS, ids=[f"{name} {options}" for name, options in OPTIONS])
 def test_it_is_that_of_the_plain_passes(lab, name, options):
     module = MODULES[name](**options)
-    if not in_one_pass(module):
+    if not in_one_pass(plan(module)):
         assert "image" not in lab.render(scene(), module, size=SIZE).complete("image").timings
         return
     check(lab.render(scene(), module, size=SIZE), lab.render(scene(), module, size=SIZE))
@@ -57,7 +63,7 @@ def test_it_is_that_of_the_plain_passes(lab, name, options):
 
 def test_these_methods_have_it():
     without = {"rsm", "environment_vpl", "instant_radiosity"}
-    assert {name for name, module in MODULES.items() if not in_one_pass(module())} == without
+    assert {name for name, module in MODULES.items() if not in_one_pass(plan(module()))} == without
 
 
 @pytest.mark.parametrize(
@@ -74,10 +80,10 @@ def test_of_every_view_and_display(lab, settings):
 
 def test_steps_that_read_each_other_stay_plain(lab):
     """A bounce reads the light, and so may a step of the module's own."""
-    assert not in_one_pass(MODULES["ssdo"](bounces=1))
-    assert not in_one_pass(MODULES["ssao"](fill=4))
-    assert not in_one_pass(MODULES["ambient_transfer"](albedo_source="radiance"))
-    assert not in_one_pass(MODULES["s3ho"](indirect=True))
+    assert not in_one_pass(plan(MODULES["ssdo"](bounces=1)))
+    assert not in_one_pass(plan(MODULES["ssao"](fill=4)))
+    assert not in_one_pass(plan(MODULES["ambient_transfer"](albedo_source="radiance")))
+    assert not in_one_pass(plan(MODULES["s3ho"](indirect=True)))
 
     class Red(aolab.SSAO):
         def lighting(self):
@@ -86,7 +92,7 @@ def test_steps_that_read_each_other_stay_plain(lab):
             return [direct, aolab.Pass("ambient", red, ambient.outputs)]
 
     frame = lab.render(scene().replace(lights=()), Red(), size=SIZE, tone_map="linear")
-    assert not in_one_pass(Red())
+    assert not in_one_pass(plan(Red()))
     inside = frame.mask & (frame["radiance"].max(axis=2) <= 1)
     assert inside.any()
     np.testing.assert_array_equal(frame.image[inside], np.tile((255, 0, 0), (inside.sum(), 1)))

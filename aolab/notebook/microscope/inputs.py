@@ -107,4 +107,4 @@ def inputs(frame: Frame, step: Pass, estimate: Estimate | None, bounces: bool) -
     uniforms |= step.constants
     # the lighting takes the first sample set only, an estimate all of them
     seeds = state.frame.seeds if estimate else state.frame.seeds[:1]
-    return Inputs(step, module, state.frame.occluders, frame.scene, view.size, textures, uniforms, seeds)
+    return Inputs(step, module, state.frame.plan.occluders, frame.scene, view.size, textures, uniforms, seeds)
