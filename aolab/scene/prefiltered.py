@@ -33,13 +33,7 @@ class Blurred:
 
 def octahedral_directions(texels: int) -> np.ndarray:
     """(texels, texels, 3): the unit direction of each texel's centre; rows along v, columns along u."""
-    u, v = np.meshgrid(*((np.arange(texels) + 0.5) / texels,) * 2)
-    return octahedral_direction(np.stack([u, v], axis=-1))
-
-
-def octahedral_direction(uv: np.ndarray) -> np.ndarray:
-    """The unit direction (..., 3) at uv (..., 2) in [0, 1]: `octahedralDirection` in glsl/lib/octahedral.glsl."""
-    x, z = np.moveaxis(2 * uv - 1, -1, 0)
+    x, z = np.meshgrid(*(2 * (np.arange(texels) + 0.5) / texels - 1,) * 2)
     y = 1 - np.abs(x) - np.abs(z)
     fold = np.maximum(-y, 0)
     directions = np.stack([x - np.where(x >= 0, fold, -fold), y, z - np.where(z >= 0, fold, -fold)], axis=-1)

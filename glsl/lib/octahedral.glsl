@@ -9,11 +9,3 @@ vec2 octahedralUv(vec3 worldDir) {
     if (worldDir.y < 0.0) folded = (1.0 - abs(folded.yx)) * signs;
     return 0.5 * folded + 0.5;
 }
-
-// The direction at `uv`, unit.
-vec3 octahedralDirection(vec2 uv) {
-    vec2 folded = 2.0 * uv - 1.0;
-    float up = 1.0 - abs(folded.x) - abs(folded.y), below = max(-up, 0.0);
-    vec2 across = folded - vec2(folded.x >= 0.0 ? below : -below, folded.y >= 0.0 ? below : -below);
-    return normalize(vec3(across.x, up, across.y));
-}

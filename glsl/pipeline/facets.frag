@@ -1,4 +1,4 @@
-// The normals of triangles, from the points of an octahedral map that the G-buffer stores.
+// The normals of triangles, from their uv in an azimuthal map, which the G-buffer stores.
 // Inputs: viewZ, and those of lib/facets.glsl. Output: facetNormal, unit, view space; 0 in the background.
 
 #include "lib/space.glsl"

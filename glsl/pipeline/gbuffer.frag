@@ -5,7 +5,7 @@
 // On demand: surfaceUv       texture coordinates (RG32F)
 //            surfaceTangent  unit view-space direction on the surface in which u grows, 0 without uv (RGBA16F)
 //            surfaceEmission radiance that the material sends by itself, linear RGB (RGBA32F)
-//            surfaceFacets   the normal of the triangle, on the side of surfaceNormal, in an octahedral map around +z (RG16)
+//            surfaceFacets   the normal of the triangle, on the side of surfaceNormal, in an azimuthal map around +z (RG16)
 //            surfaceBaked    visibility that is baked into the vertices, 1 where none is (R16F)
 //            surfaceMotion   pixels moved since the last frame, by the camera (RG32F)
 //            surfaceGeometricNormal  surfaceNormal without normal and height maps (RGBA16F)
@@ -29,7 +29,7 @@ const bool peel;  // draw what lies behind the layer `nearerZ`, with the mesh's 
 
 #include "lib/base_color.glsl"
 #include "lib/relief.glsl"
-#include "lib/octahedral.glsl"
+#include "lib/azimuthal.glsl"
 
 uniform sampler2D nearerZ;
 uniform sampler2D emission_texture;
@@ -131,7 +131,7 @@ void main() {
     if (with_facets) {
         // derivatives over a pixel are rounded, in a large triangle: those of a flat mesh are not needed
         vec3 facet = is_smooth ? normalize(faceNormal) : side * normal;
-        surfaceFacets = octahedralUv(faceforward(facet, -surfaceNormal.xyz, facet).xzy);
+        surfaceFacets = azimuthalUv(faceforward(facet, -surfaceNormal.xyz, facet));
     }
     if (with_uv) surfaceUv = uv;
     if (with_tangent) surfaceTangent = vec4(tangentHere(surfaceNormal.xyz), 0.0);

@@ -10,7 +10,6 @@ import numpy as np
 
 from ...gl.texture import Size
 from ...modules.occluders import Height
-from ...scene.prefiltered import octahedral_direction
 from .inputs import F, Inputs
 
 Texel = tuple[int, int]  # column and row of a texel, from the top left
@@ -47,8 +46,10 @@ def receiver_at(seen: Inputs, texel: Texel) -> Receiver:
 
 
 def _facet(stored: np.ndarray) -> np.ndarray:
-    """`facetFrom` of glsl/lib/facets.glsl, from the whole numbers of its texture."""
-    return octahedral_direction(stored / F(65535))[[0, 2, 1]].astype(F)
+    """`azimuthalDirection` of glsl/lib/azimuthal.glsl, from the whole numbers of the texture."""
+    across = F(2) * (stored.astype(F) / F(65535)) - F(1)
+    depth = min(across @ across, F(1))
+    return np.array([*across * (F(2) * np.sqrt(F(1) - depth)), F(1) - F(2) * depth], F)
 
 
 def lifted(receiver: Receiver, height: np.floating) -> Receiver:
