@@ -10,6 +10,7 @@ The coefficients are the last axis of an array, (..., bands²). Functions with C
 """
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -126,17 +127,19 @@ def light_lobe(weights: np.ndarray | Sequence[float] = (1, 1, 1, 1)) -> np.ndarr
 # --- rotation and product, by quadrature over the sphere
 
 
-def _quadrature(rings: int) -> tuple[np.ndarray, np.ndarray]:
-    """Directions (n, 3) and solid angles (n,): Gauss-Legendre rings × azimuths; exact up to degree 2·rings - 1."""
+@cache
+def _quadrature() -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Directions (n, 3) of Gauss-Legendre rings × azimuths, their solid angles (n,), and the basis there (n, 16).
+
+    Exact up to degree 2·rings - 1 = 9: a product integral has three factors of degree 3.
+    """
+    rings = 5
     z, weights = np.polynomial.legendre.leggauss(rings)
     step = np.pi / rings
     azimuth, across = step * np.arange(2 * rings), np.sqrt(1 - z**2)[:, None]
     directions = np.broadcast_arrays(across * np.cos(azimuth), across * np.sin(azimuth), z[:, None])
-    return np.stack(directions, -1).reshape(-1, 3), np.repeat(weights * step, 2 * rings)
-
-
-_NODES, _SOLID_ANGLES = _quadrature(5)  # exact up to degree 9: a product integral has three factors of degree 3
-_NODE_BASIS = basis(_NODES, MAX_BANDS)
+    nodes = np.stack(directions, -1).reshape(-1, 3)
+    return nodes, np.repeat(weights * step, 2 * rings), basis(nodes, MAX_BANDS)
 
 
 def rotation(matrix: np.ndarray) -> np.ndarray:
@@ -150,8 +153,9 @@ def rotation(matrix: np.ndarray) -> np.ndarray:
     deviation = np.abs(matrix @ transposed - np.eye(3)).max()
     if not (deviation <= 1e-5 and np.all(np.linalg.det(matrix) > 0)):
         raise ValueError(f"matrix = {matrix.tolist()} is not a rotation")
-    turned = basis(_NODES @ transposed, MAX_BANDS) * _SOLID_ANGLES[:, None]
-    return np.swapaxes(turned, -1, -2) @ _NODE_BASIS
+    nodes, solid_angles, node_basis = _quadrature()
+    turned = basis(nodes @ transposed, MAX_BANDS) * solid_angles[:, None]
+    return np.swapaxes(turned, -1, -2) @ node_basis
 
 
 def rotate(coefficients: np.ndarray, matrix: np.ndarray) -> np.ndarray:
@@ -161,5 +165,6 @@ def rotate(coefficients: np.ndarray, matrix: np.ndarray) -> np.ndarray:
 
 def product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """Coefficients (..., 16) of the product of two functions (..., 16), truncated to 4 bands."""
-    values = (a @ _NODE_BASIS.T) * (b @ _NODE_BASIS.T)
-    return values * _SOLID_ANGLES @ _NODE_BASIS
+    _, solid_angles, node_basis = _quadrature()
+    values = (a @ node_basis.T) * (b @ node_basis.T)
+    return values * solid_angles @ node_basis

@@ -31,7 +31,7 @@ def _relaxed(count: int) -> np.ndarray:
     return points
 
 
-def relax(points: np.ndarray, random: np.random.Generator) -> np.ndarray:
+def relax(points: np.ndarray, random: "np.random.Generator") -> np.ndarray:
     """One step of Lloyd's relaxation on the torus: each of `points` (n, 3) moves to the mean of the nearest probes."""
     side = int(np.ceil(max(PROBES, 64 * len(points)) ** (1 / 3)))
     cells = np.stack(np.meshgrid(*[np.arange(side)] * 3), axis=-1).reshape(-1, 3)

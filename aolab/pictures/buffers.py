@@ -2,13 +2,16 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from ..errors import ParameterError
 from ..extras import missing
 from .tone import shown, srgb
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 SHARES = ("visibility", "obscurance", "transfer", "transfer_multibounce", "light_share", "baked")  # in [0, 1], grey
 RADIANCE = (  # linear RGB
@@ -116,7 +119,7 @@ def _is_colour(kind: str, values: np.ndarray) -> bool:
     return kind in (*RADIANCE, "albedo") or (kind not in DIRECTIONS and np.nanmin(values, initial=0) >= 0)
 
 
-def buffer_picture(name: str, values: np.ndarray, title: str = "") -> Image.Image:
+def buffer_picture(name: str, values: np.ndarray, title: str = "") -> "Image.Image":
     """The buffer `name` with its values (H, W) or (H, W, channels): a picture under a `title`, with a colour bar.
 
     Radiance is tone mapped; components of directions are shown as colours, from -1 to 1. A buffer of two, four or
@@ -133,9 +136,9 @@ def buffer_picture(name: str, values: np.ndarray, title: str = "") -> Image.Imag
     return framed(np.concatenate(rows, axis=0), scale, title or name)
 
 
-def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
+def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> "Image.Image":
     """`pixels` (H, W, 3) under a title, with the bar of `scale` on the right."""
-    from PIL import ImageDraw
+    from PIL import Image, ImageDraw
 
     from .font import caption_font
 
@@ -148,9 +151,9 @@ def framed(pixels: np.ndarray, scale: Scale | None, title: str) -> Image.Image:
     return sheet
 
 
-def bar_picture(scale: Scale, height: int) -> Image.Image:
+def bar_picture(scale: Scale, height: int) -> "Image.Image":
     """The colour bar of a scale, with numbers beside it."""
-    from PIL import ImageDraw
+    from PIL import Image, ImageDraw
 
     from .font import caption_font
 

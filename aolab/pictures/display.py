@@ -5,15 +5,17 @@ The functions take any object with the attributes that they read: the classes st
 
 from collections.abc import Iterable
 from itertools import count
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
-from PIL import Image
 
 from ..errors import ParameterError
 from . import html
 from .buffers import buffer_picture, buffer_pixels, first_buffer, scale_of
 from .tone import shown
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 PREVIEW = (320, 180)  # pixels: the render beside a scene's table
 MOST_ROWS = 12
@@ -33,7 +35,7 @@ class Shown(Protocol):
     def __getitem__(self, name: str) -> np.ndarray: ...
 
 
-def frame_picture(frame: Shown, buffer: str = "") -> Image.Image:
+def frame_picture(frame: Shown, buffer: str = "") -> "Image.Image":
     """A buffer of a frame, with a colour bar. The default is the image, or else the first buffer."""
     name = buffer or first_buffer(frame.buffers)
     return buffer_picture(name, frame[name], f"{name} of {frame.info.get('module', 'a frame')}")
@@ -55,6 +57,8 @@ def frame_png(frame: Shown) -> bytes:
 
 def frame_html(frame: Shown) -> str:
     """The image, then every other buffer, of which one is open at a time; then the times of the passes."""
+    from PIL import Image
+
     first = first_buffer(frame.buffers)
     names = [first, *(name for name in frame.buffers if name != first and not name.endswith("_raw"))]
     parts = []
@@ -106,6 +110,8 @@ def comparison_html(comparison: Any) -> str:
 
 def environment_png(radiance: np.ndarray) -> bytes:
     """The bytes of a PNG file: an equirectangular map (H, W, 3), tone mapped, at least 256 pixels wide."""
+    from PIL import Image
+
     enlarged = max(1, 256 // radiance.shape[1])
     pixels = shown(radiance).repeat(enlarged, axis=0).repeat(enlarged, axis=1)
     return html.png(html.smaller(Image.fromarray(pixels)))
@@ -125,6 +131,8 @@ def captioned(pictures: Any) -> list[tuple[str, Any]]:
 
 def pixels_of(picture: Any) -> np.ndarray:
     """(H, W, 3) uint8 of a frame, an image or an array. Raises `ParameterError` for anything else."""
+    from PIL import Image
+
     if hasattr(picture, "buffers"):
         return frame_pixels(picture)
     if isinstance(picture, Image.Image):

@@ -5,13 +5,16 @@ import warnings
 from contextlib import closing
 from os import PathLike
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
-from PIL import Image
 
 from ..errors import FileError, shorten
 from ..input import Budget, TooLarge, read_file
 from . import exr, rgbe
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 MAX_PIXELS = 1 << 27  # 16384 × 8192, the largest environment maps in use; 0.5 GB as RGBA, 1.6 GB as float RGB
 FORMATS = ("PNG", "JPEG", "WEBP", "BMP", "TGA", "GIF", "TIFF", "PPM")  # not EPS: Pillow runs Ghostscript for it
@@ -30,6 +33,8 @@ def read_image(
     Raises `FileError` if the picture is missing, is corrupt, has none of the `FORMATS`, has more than `max_pixels`
     pixels, or does not fit the budget. The size is checked before anything is decoded.
     """
+    from PIL import Image  # here: most scenes have no pictures
+
     what, budget = f"image '{shorten(name)}'", budget or Budget()
     data = source if isinstance(source, bytes) else read_file(source, what, budget)
     with warnings.catch_warnings():
@@ -60,7 +65,9 @@ def _reason(error: Exception) -> str:
     return f": {error}" if isinstance(error, (OSError, SyntaxError)) and str(error) and not error.args[1:] else ""
 
 
-def _rgba(image: Image.Image) -> Image.Image:
+def _rgba(image: "Image.Image") -> "Image.Image":
+    from PIL import Image
+
     if image.mode.startswith("I"):  # Pillow would clip 16-bit values to 255 instead of scaling them
         image = Image.fromarray(np.rint(np.clip(np.asarray(image), 0, 65535) / 257).astype(np.uint8))
     return image if image.mode == "RGBA" else image.convert("RGBA")

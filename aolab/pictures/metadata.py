@@ -6,7 +6,6 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from PIL import Image, PngImagePlugin, UnidentifiedImageError
 
 from ..errors import FileError
 from ..input import Budget, as_path, read_file
@@ -20,6 +19,8 @@ def save_png(path: str | PathLike[str], image: np.ndarray, info: dict[str, Any])
 
     An existing file is replaced atomically.
     """
+    from PIL import Image, PngImagePlugin  # here: not every render is saved
+
     if as_path(path).suffix.lower() != ".png":
         raise FileError(f"cannot write {path}: images are written as .png")
     text = PngImagePlugin.PngInfo()
@@ -31,6 +32,8 @@ def save_png(path: str | PathLike[str], image: np.ndarray, info: dict[str, Any])
 
 def read_png(path: str | PathLike[str]) -> dict[str, Any]:
     """The `info` of a PNG that `save_png` wrote. Raises `FileError` if the file is missing, or has none."""
+    from PIL import Image, UnidentifiedImageError
+
     data = read_file(path, str(path), Budget())
     try:
         with Image.open(io.BytesIO(data), formats=["PNG"]) as image:

@@ -7,11 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from os import PathLike
 from time import perf_counter
-from typing import Any, Self, TypeVar
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import moderngl
 import numpy as np
-from PIL import Image
 
 from ..errors import Notice, ParameterError, suggestion
 from ..gl.texture import Pool, read
@@ -22,6 +21,9 @@ from ..pictures.buffer_files import save_buffers
 from ..pictures.metadata import save_png
 from ..scene.camera import Camera
 from ..scene.scene import Scene
+
+if TYPE_CHECKING:
+    from PIL import Image
 
 Holder = TypeVar("Holder")
 Textures = Mapping[str, moderngl.Texture | np.ndarray]
@@ -182,7 +184,7 @@ class Frame:
         known = {key: self.info[key] for key in keys if key in self.info}
         return {**known, "timings": self.timings, "frame_ms": self.frame_ms, "notes": self.notes}
 
-    def show(self, buffer: str = "") -> Image.Image:
+    def show(self, buffer: str = "") -> "Image.Image":
         """A picture of a buffer, with a colour bar. The default is the image, or else the frame's first buffer."""
         return display.frame_picture(self, buffer)
 

@@ -40,8 +40,8 @@ _CUBE = (
 class ShadowMaps:
     """The shadow maps of all lights: tiles of `atlas`, a depth texture.
 
-    `table` has a row for each tile: the four columns of its clip_from_world; then its corner x, y and its size, in uv,
-    and its bias at the distance 1 for a slope of 1, in scene units (glsl/lib/shadow_tiles.glsl).
+    `table` has a row for each tile: the four columns of its clip_from_world; then its corner x, y and its side, in
+    pixels, and its bias at the distance 1 for a slope of 1, in scene units (glsl/lib/shadow_tiles.glsl).
     """
 
     atlas: moderngl.Texture
@@ -112,22 +112,23 @@ def draw_tiles(
     Raises `ParameterError` for an atlas that is larger than the driver allows.
     """
     gl, count = context.get(), len(projections)
-    side = max(1, ceil(sqrt(count)))
-    width = side * tile
+    columns = max(1, ceil(sqrt(count)))
+    width, height = columns * tile, max(1, ceil(count / columns)) * tile
     limit = gl.info["GL_MAX_TEXTURE_SIZE"]
     if width > limit:
         raise ParameterError(
-            f"{count} shadow maps of {tile} pixels a side need an atlas of {width}x{width}; this driver has at most "
-            f"{limit}x{limit}. At most {(limit // tile) ** 2} such maps fit, or {count} maps of {limit // side} pixels"
+            f"{count} shadow maps of {tile} pixels a side need an atlas of {width}x{height}; this driver has at most "
+            f"{limit}x{limit}. At most {(limit // tile) ** 2} such maps fit, or {count} of {limit // columns} pixels"
         )
-    atlas = gl.depth_texture((width, width))
-    refuse_exhaustion(f"shadow maps of {width}x{width}")
+    atlas = gl.depth_texture((width, height))
+    refuse_exhaustion(f"shadow maps of {width}x{height}")
     atlas.compare_func = "<="
     atlas.filter = (moderngl.LINEAR, moderngl.LINEAR)
     atlas.repeat_x = atlas.repeat_y = False
+    corners = [(index % columns * tile, index // columns * tile) for index in range(count)]
     views = [
-        Projection(view, clip, (tile, tile), (index % side * tile, index // side * tile), (width, width))
-        for index, (view, clip) in enumerate(projections)
+        Projection(view, clip, (tile, tile), corner, (width, height))
+        for corner, (view, clip) in zip(corners, projections, strict=True)
     ]
     if views:
         gl.polygon_offset = slope_bias, CONSTANT_BIAS if slope_bias else 0.0
@@ -137,5 +138,5 @@ def draw_tiles(
     for row, (view, clip) in enumerate(projections):
         table[row, :4] = (clip @ view).T
         texel = 2 / clip[0, 0] / tile  # its width, at the distance 1 if the rays are not parallel
-        table[row, 4] = row % side / side, row // side / side, 1 / side, slope_bias * texel
+        table[row, 4] = *corners[row], tile, slope_bias * texel
     return atlas, make((5, len(table)), "RGBA32F", table.tobytes()), table

@@ -2,7 +2,6 @@
 
 import moderngl
 import numpy as np
-from PIL import Image
 
 from ..errors import notice
 from ..gl import context, raw
@@ -21,6 +20,8 @@ def upload(texture: Texture, cutoff: float | None, colors: bool = True) -> moder
 
     A picture that is larger than the driver allows is drawn smaller, with a `Notice`. Raises `GpuMemoryError`.
     """
+    from PIL import Image  # here: most scenes have no textures
+
     gl = context.get()
     limit = gl.info["GL_MAX_TEXTURE_SIZE"]
     pixels = texture.pixels
@@ -77,6 +78,8 @@ def covering_levels(pixels: np.ndarray, cutoff: float) -> list[np.ndarray]:
 
 
 def _halved(plane: np.ndarray, size: tuple[int, int]) -> np.ndarray:
+    from PIL import Image
+
     return np.asarray(Image.fromarray(plane).resize(size, Image.Resampling.BOX))
 
 

@@ -171,7 +171,8 @@ class Scene:
             instance.placed(instance.mesh.vertices[:: 1 + len(instance.mesh.vertices) // SAMPLED])
             for instance in self.instances
         ])  # fmt: skip
-        away = np.linalg.norm(sample - np.median(sample, axis=0), axis=1)
+        # not np.median, whose first call imports numpy.ma
+        away = np.linalg.norm(sample - np.quantile(sample, 0.5, axis=0), axis=1)
         rising = np.sort(away)
         nearer, next_ones = rising[len(rising) // 2 : -1], rising[len(rising) // 2 + 1 :]
         gaps = np.flatnonzero((nearer > 0) & (next_ones > GAP * nearer))

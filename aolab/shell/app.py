@@ -24,15 +24,6 @@ COMMANDS = (render, reference, compare, modules, scenes, doctor, bench, tune, sw
 
 NAMES = [*(command.__name__ for command in COMMANDS), "exercise"]
 
-app = typer.Typer(
-    name="aolab",
-    help="A laboratory for ambient lighting in image space.",
-    epilog="`aolab COMMAND --help` describes a command. `--debug` shows the traceback of an error.",
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-    context_settings={"help_option_names": ["-h", "--help"]},
-)
-
 
 def _print_version(asked: bool) -> None:
     if asked:
@@ -40,7 +31,6 @@ def _print_version(asked: bool) -> None:
         raise typer.Exit()
 
 
-@app.callback()
 def _options(
     version: Annotated[
         bool,
@@ -49,6 +39,20 @@ def _options(
 ) -> None: ...
 
 
-for command in COMMANDS:
-    app.command()(command)
-app.add_typer(exercise)
+def app(*names: str) -> typer.Typer:
+    """The commands of these names, or all. Typer reads the options of each command, which takes 1 ms."""
+    made = typer.Typer(
+        name="aolab",
+        help="A laboratory for ambient lighting in image space.",
+        epilog="`aolab COMMAND --help` describes a command. `--debug` shows the traceback of an error.",
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+        context_settings={"help_option_names": ["-h", "--help"]},
+    )
+    made.callback()(_options)
+    for command in COMMANDS:
+        if command.__name__ in (names or NAMES):
+            made.command()(command)
+    if "exercise" in (names or NAMES):
+        made.add_typer(exercise)
+    return made

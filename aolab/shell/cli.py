@@ -4,6 +4,7 @@ Only the standard library is imported here, so that an interrupt while the rest 
 """
 
 import codecs
+import gc
 import os
 import sys
 from collections.abc import Callable
@@ -11,11 +12,20 @@ from typing import Any
 
 DONE, REFUSED, INTERRUPTED = 0, 2, 130  # exit codes; 130 is what shells report for SIGINT
 PLAIN = {"≥": ">=", "≤": "<=", "×": "x", "±": "+-", "→": "->", "°": " degrees", "−": "-", "–": "-", "…": "..."}
+# Variables of libraries, each set unless the user has set it: a command starts without work that it does not need.
+LIBRARIES = {
+    "OPENBLAS_NUM_THREADS": "1",  # NumPy's import starts a thread for each further core, which spins for 30 ms
+    "PYDANTIC_DISABLE_PLUGINS": "__all__",  # the search for plugins reads the metadata of all installed packages
+}
+OBJECTS = 50_000  # between two collections of garbage: a frame leaves none, and the objects of all imports stay
 
 
 def main(imported: Callable[[], object] = lambda: None) -> None:
     """Run the command in `sys.argv` and end the process with its exit code; `imported` is called between the imports
     and the run."""
+    for name, value in LIBRARIES.items():
+        os.environ.setdefault(name, value)
+    gc.set_threshold(OBJECTS)
     debug = "--debug" in sys.argv
     arguments = [argument for argument in sys.argv[1:] if argument != "--debug"] or ["--help"]
     _write_any_character()
@@ -46,14 +56,15 @@ def _run(arguments: list[str], imported: Callable[[], object]) -> int:
 
     from ..errors import Notice
     from ..interrupts import after_imports
-    from .app import app
+    from .app import NAMES, app
 
     imported()
     warnings.simplefilter("always", Notice)
     warnings.showwarning = _show_notice
     with after_imports():
         # typer returns the code of `typer.Exit`, and of an interrupt
-        return app(arguments, prog_name="aolab", standalone_mode=False) or DONE
+        asked = arguments[:1] if arguments[0] in NAMES else ()
+        return app(*asked)(arguments, prog_name="aolab", standalone_mode=False) or DONE
 
 
 def _message(error: Exception, arguments: list[str]) -> str | None:

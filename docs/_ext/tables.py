@@ -106,7 +106,7 @@ class ShellHelp(Markdown):
     """`aolab --help`, and the help of every command."""
 
     def text(self) -> str:
-        group: Any = typer.main.get_command(shell)  # with the options for completion
+        group: Any = typer.main.get_command(shell())  # with the options for completion
         pages = [f"### {name}\n\n{_help_of(command, f'aolab {name}')}" for name, command in group.commands.items()]
         return "\n\n".join([_help(group, "aolab"), *pages])
 

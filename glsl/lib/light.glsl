@@ -29,18 +29,18 @@ int cubeFace(vec3 fromLight) {
 }
 
 // The unshadowed share of a light, by percentage-closer filtering (Reeves, Salesin and Cook 1987): the mean of 2×2
-// comparisons, each interpolated by the sampler. `tile`: lower corner (xy) and size (z) of the tile in the atlas, uv.
+// comparisons, each interpolated by the sampler. `tile`: lower corner (xy) and side (z) of the tile in the atlas, pixels.
 float shadowAt(sampler2DShadow atlas, mat4 shadowFromWorld, vec3 tile, vec3 worldPos) {
     vec4 clip = shadowFromWorld * vec4(worldPos, 1.0);
     vec3 inTile = clip.xyz / clip.w * 0.5 + 0.5;
     if (clip.w <= 0.0 || inTile.z >= 1.0 || any(greaterThan(abs(inTile.xy - 0.5), vec2(0.5)))) return 1.0;
     vec2 texel = 1.0 / vec2(textureSize(atlas, 0));
-    vec2 low = tile.xy + texel, high = tile.xy + tile.z - texel;  // a neighbouring tile belongs to another light
-    vec2 at = tile.xy + inTile.xy * tile.z;
+    vec2 low = tile.xy + 1.0, high = tile.xy + tile.z - 1.0;  // a neighbouring tile belongs to another light
+    vec2 atPx = tile.xy + inTile.xy * tile.z;
     float lit = 0.0;
     for (int i = 0; i < 4; ++i) {
-        vec2 offset = (vec2(i & 1, i >> 1) - 0.5) * 1.5;
-        lit += texture(atlas, vec3(clamp(at + offset * texel, low, high), inTile.z));
+        vec2 offsetPx = (vec2(i & 1, i >> 1) - 0.5) * 1.5;
+        lit += texture(atlas, vec3(clamp(atPx + offsetPx, low, high) * texel, inTile.z));
     }
     return lit / 4.0;
 }

@@ -3,8 +3,8 @@
 #include "lib/light.glsl"
 
 uniform sampler2DShadow shadow_atlas;
-// A row a tile: the four columns of its clip_from_world; its corner (xy) and its size (z) in the atlas, uv, and its bias
-// (w) at the distance 1, for tan α = 1.
+// A row a tile: the four columns of its clip_from_world; its corner (xy) and its side (z) in the atlas, pixels, and its
+// bias (w) at the distance 1, for tan α = 1.
 uniform sampler2D shadow_table;
 
 const bool one_tile;   // the table has a single row, and these uniforms hold it: on llvmpipe, the fetches take longer

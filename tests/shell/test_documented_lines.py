@@ -3,6 +3,7 @@
 import re
 import shlex
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
@@ -31,6 +32,6 @@ def test_the_pages_have_lines():
 @pytest.mark.parametrize(("page", "line"), LINES, ids=lambda text: text)
 def test_a_line_is_understood(page, line):
     name, *words = shlex.split(line)
-    command = typer.main.get_command(app)
+    command: Any = typer.main.get_command(app())
     assert name in command.commands, f"{page}: no command '{name}'"
     command.commands[name].make_context(name, words).close()  # raises for an unknown option or a missing argument

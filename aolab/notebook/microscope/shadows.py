@@ -29,17 +29,15 @@ def shadow(seen: Inputs, tile: int, place: np.ndarray) -> tuple[float, np.ndarra
     The place is the receiver's own where the map has no shadow.
     """
     row = seen["shadow_table"][::-1][tile]
-    to_tile, (left, bottom, side) = row[:4].T, row[4, :3]
+    to_tile, corner, side = row[:4].T, row[4, :2], row[4, 2]
     clip = moved(to_tile, place)
     in_tile = clip[:3] / clip[3] * F(0.5) + F(0.5)
     if clip[3] <= 0 or in_tile[2] >= 1 or (np.abs(in_tile[:2] - F(0.5)) > F(0.5)).any():
         return 1.0, place
-    atlas, corner = seen["shadow_atlas"][::-1], np.array([left, bottom], F)
-    texel = F(1) / np.array(atlas.shape[::-1], F)
-    at = corner + in_tile[:2] * side
-    uv = np.clip(at + COMPARISONS * texel, corner + texel, corner + side - texel)
-    low = np.floor(uv / texel - F(0.5))
-    u, v = (uv / texel - F(0.5) - low).T
+    atlas = seen["shadow_atlas"][::-1]
+    pixel = np.clip(corner + in_tile[:2] * side + COMPARISONS, corner + F(1), corner + side - F(1))
+    low = np.floor(pixel - F(0.5))
+    u, v = (pixel - F(0.5) - low).T
     limit = np.array(atlas.shape[::-1]) - 1
     x0, y0 = np.clip(low, 0, limit).astype(int).T
     x1, y1 = np.clip(low + 1, 0, limit).astype(int).T
@@ -49,7 +47,7 @@ def shadow(seen: Inputs, tile: int, place: np.ndarray) -> tuple[float, np.ndarra
         return 1.0, place
     nearest = atlas[y0, x0].argmin()
     at_texel = np.array([x0[nearest], y0[nearest]])
-    in_map = ((at_texel + 0.5) * texel - corner) / side
+    in_map = (at_texel + 0.5 - corner) / side
     seen_there = np.linalg.inv(to_tile.astype(np.float64)) @ (
         *(2 * in_map - 1),
         2 * _depth(seen, atlas, at_texel) - 1,
