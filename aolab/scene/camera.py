@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import product
 from math import radians, tan
 
 import numpy as np
@@ -11,6 +12,13 @@ from ..maths.numbers import numbers, vector
 from ..maths.transforms import look_along, orthographic, perspective
 
 Vec3 = tuple[float, float, float]
+
+_SIDES = np.array([*product((0, 1), repeat=3)])  # (8, 3): of each corner of a box, the low or the high side
+
+
+def corners(bounds: np.ndarray) -> np.ndarray:
+    """(8, 3): the corners of a box (2, 3)."""
+    return bounds[_SIDES, (0, 1, 2)]
 
 
 @dataclass(frozen=True)
@@ -87,8 +95,7 @@ class Camera:
 
     def clip_planes(self, bounds: np.ndarray) -> tuple[float, float]:
         """Near and far distances that hold `bounds` (2, 3), where the camera does not give narrower ones."""
-        corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
-        distances = -(corners @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
+        distances = -(corners(bounds) @ self.view_from_world[2, :3] + self.view_from_world[2, 3])
         reach = max(float(distances.max()) * 1.01, 1e-6)
         far = min(self.far or reach, reach)  # beyond, there is nothing, and the depth buffer would lose precision
         # 24 bits of depth: 1e-3 keeps 3 mm apart at 25 m, and parallel rays lose nothing
@@ -130,8 +137,7 @@ class Camera:
         centre = bounds.mean(axis=0)
         towards = np.asarray(direction) / np.linalg.norm(direction)
         probe = cls(eye=tuple(towards), target=(0, 0, 0), fov=fov)
-        corners = np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T - centre
-        x, y, z = probe.view_from_world[:3, :3] @ corners.T
+        x, y, z = probe.view_from_world[:3, :3] @ (corners(bounds) - centre).T
         # the distance at which each corner falls inside the frame, 5 % away from its edge
         distance = float((z + np.maximum(np.abs(x), np.abs(y)) * 1.05 / np.tan(np.radians(fov) / 2)).max())
         return cls(eye=tuple(centre + towards * max(distance, 1e-6)), target=tuple(centre), fov=fov, fit=True)

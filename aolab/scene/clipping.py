@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import shorten
 from ..maths.distances import to_boxes, to_triangles
-from .camera import Camera
+from .camera import Camera, corners
 from .mesh import Mesh
 from .scene import Scene
 from .view import Size, View
@@ -26,7 +26,8 @@ def unclipped(camera: Camera, scene: Scene, size: Size) -> Camera:
     """
     if camera.ortho is not None:
         return camera
-    near, far = replace(camera, near=None).clip_planes(scene.bounds)
+    free = camera if camera.near is None else replace(camera, near=None)
+    near, far = free.clip_planes(scene.bounds)
     if camera.near is not None and camera.near >= near:
         return camera
     own, slant, nearest = camera if camera.near is None else replace(camera, near=near), _slant(camera, size), None
@@ -57,16 +58,18 @@ def nearest_surface(scene: Scene, point: np.ndarray, limit: float) -> float | No
             break
         number, chunk = owners[place]
         instance = scene.instances[number]
-        corners = instance.placed(instance.mesh.vertices[instance.mesh.chunk(chunk)].reshape(-1, 3)).reshape(-1, 3, 3)
-        best = min(best, float(to_triangles(point, corners).min()))
+        points = instance.placed(instance.mesh.vertices[instance.mesh.chunk(chunk)].reshape(-1, 3)).reshape(-1, 3, 3)
+        best = min(best, float(to_triangles(point, points).min()))
     return best if best < limit else None
 
 
 def reason_of_nothing(scene: Scene, view: View) -> str:
     """Why no surface of the scene is in the picture, as far as the scene's boxes and materials tell."""
     near, far = view.camera.clip_planes(scene.bounds)
-    corners = [_corners(bounds) for bounds in scene.instance_bounds]
-    boxes = np.array(corners) @ view.camera.view_from_world[:3, :3].T + view.camera.view_from_world[:3, 3]  # (i, 8, 3)
+    boxes = (
+        np.array([corners(bounds) for bounds in scene.instance_bounds]) @ view.camera.view_from_world[:3, :3].T
+        + view.camera.view_from_world[:3, 3]
+    )  # (i, 8, 3)
     distance = -boxes[..., 2]
     if distance.max() <= 0:
         return "all of the scene lies behind the camera"
@@ -161,12 +164,12 @@ def _reaches(mesh: Mesh, planes: np.ndarray) -> bool:
     """Has a triangle a point on the positive side of all `planes` (p, 4), of local space?"""
 
     for number in _reached(mesh.chunk_bounds, planes):
-        corners = mesh.vertices[mesh.chunk(number)].astype(np.float64)  # (n, 3, 3)
-        at_corners = corners @ planes[:, :3].T + planes[:, 3]
+        points = mesh.vertices[mesh.chunk(number)].astype(np.float64)  # (n, 3, 3)
+        at_corners = points @ planes[:, :3].T + planes[:, 3]
         if (at_corners > 0).all(axis=2).any():
             return True
         straddling = (at_corners.max(axis=1) > 0).all(axis=1)
-        if any(clipped(triangle, planes) for triangle in corners[straddling]):
+        if any(clipped(triangle, planes) for triangle in points[straddling]):
             return True
     return False
 
@@ -196,9 +199,4 @@ def clipped(polygon: np.ndarray, planes: np.ndarray) -> list[np.ndarray]:
 
 def _distances(camera: Camera, bounds: np.ndarray) -> np.ndarray:
     """(8,): of the corners of a box (2, 3) from the camera, along its view."""
-    return -(_corners(bounds) @ camera.view_from_world[2, :3] + camera.view_from_world[2, 3])
-
-
-def _corners(bounds: np.ndarray) -> np.ndarray:
-    """(8, 3): the corners of a box (2, 3)."""
-    return np.array(np.meshgrid(*bounds.T)).reshape(3, -1).T
+    return -(corners(bounds) @ camera.view_from_world[2, :3] + camera.view_from_world[2, 3])
