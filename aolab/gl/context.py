@@ -64,12 +64,13 @@ def current() -> Iterator[None]:
     A program may have OpenGL contexts of its own, through moderngl or pyrender: without this, their textures would be
     taken for ours. Nothing is done where the context is current already. Raises what `get` raises.
     """
+    if egl.is_bound(_state.binding):
+        get()  # raises in a forked process
+        yield
+        return
     former = egl.bound()
     context = get()
     own = _state.binding
-    if former == own and former.context:
-        yield
-        return
     if own.context:
         egl.bind(own)
         try:

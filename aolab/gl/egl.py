@@ -78,6 +78,12 @@ def bound() -> Binding:
     return Binding(egl.eglGetCurrentDisplay() or 0, draw, read, egl.eglGetCurrentContext() or 0)
 
 
+def is_bound(binding: Binding) -> bool:
+    """Whether the context of `binding` is current in this thread: the quick form of a comparison with `bound()`."""
+    egl = _egl()
+    return egl is not None and binding.context != 0 and egl.eglGetCurrentContext() == binding.context
+
+
 def bind(binding: Binding) -> None:
     """Make a context current in this thread, or none. Raises `ContextError` where the context has been ended."""
     egl = _egl()

@@ -115,9 +115,7 @@ class Plan:
     @cached_property
     def asked(self) -> Asked:
         """All that the passes, and the occluder kind, read."""
-        asks_for_occluders = any(
-            "occluders.glsl" in self.declared(step.shader, step.includes).includes for step in self.passes
-        )
+        asks_for_occluders = any("occluders.glsl" in read.includes for read in map(self._read, self.passes))
         lights = [step.samples for step in self.lighting if isinstance(step, VirtualLights)]
         names = self.sampled(self.passes).union(*lights)
         return Asked(names, asks_for_occluders, bool(names & {*REFLECTIVE, PACKED}))
@@ -126,10 +124,14 @@ class Plan:
         """The buffers that these passes sample, those of the occluder kind included."""
         names: set[str] = set()
         for step in passes:
-            read = self.declared(step.shader, step.includes)
+            read = self._read(step)
             samplers = set(read.samplers)
             if "occluders.glsl" in read.includes:
                 texts = self.occluders.bindings().includes.values()
                 samplers.update(*(self.declared(text).samplers for text in texts))
             names |= {step.reads.get(name, name) for name in samplers}
         return frozenset(names)
+
+    def _read(self, step: Pass) -> Declared:
+        """The names in the text of a pass's shader."""
+        return self.declared(step.shader, step.includes)
