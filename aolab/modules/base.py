@@ -211,10 +211,11 @@ class Module(Parameters):
     @classmethod
     def prepared(cls, values: dict[str, Any]) -> dict[str, Any]:
         """The values with all parameters of the chosen kinds. Raises `ParameterError` for one of another choice."""
-        own = {name: value for name, value in values.items() if name in cls.model_fields}
+        fields = cls.model_fields  # pydantic takes its time for each look
+        own = {name: value for name, value in values.items() if name in fields}
         others = {name: value for name, value in values.items() if name not in own}
         for axis, table in cls.choices.items():
-            chosen = own.get(axis, cls.model_fields[axis].default)
+            chosen = own.get(axis, fields[axis].default)
             if isinstance(chosen, str) and chosen in table:
                 chosen = table[chosen]()
             if isinstance(chosen, Choice):
@@ -263,6 +264,8 @@ class Module(Parameters):
     @classmethod
     def changed(cls, values: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
         """The values with some changed. Another choice drops the parameters of the choice before it."""
+        if cls.choices.keys().isdisjoint(changes):
+            return {**values, **changes}
         stated = cls.stated()
         dropped = {
             name

@@ -94,9 +94,11 @@ class Parameters(BaseModel, metaclass=_Declared):
         """
 
         def value(name: str, given: Any) -> Any:
+            if not isinstance(given, str):
+                return given
             owner = cls.stated().get(name)
             annotation = str if owner is None else owner.model_fields[name].annotation
-            if isinstance(given, str) and annotation is not str:
+            if annotation is not str:
                 listed = get_origin(annotation) is tuple and not given.startswith("[")
                 with suppress(ValueError, RecursionError):  # no JSON; too many digits; brackets within brackets
                     return json.loads(f"[{given}]" if listed else given)

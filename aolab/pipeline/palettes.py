@@ -9,7 +9,7 @@ import numpy as np
 from ..gl.bindings import Bindings
 from ..gl.texture import Depth, make
 from ..modules.buffers import SURFACES
-from ..modules.passes import TERMS, Pass
+from ..modules.passes import Pass
 from ..scene.scene import Scene
 from .doubts import is_own
 from .geometry import stored
@@ -34,7 +34,7 @@ def is_enough(frame: FrameContext) -> bool:
         return False
     if module.scale < 1 or is_own(module) or not in_one_pass(frame.plan):
         return False
-    return "albedo" not in frame.plan.sampled(step for step in frame.plan.passes if step.shader not in TERMS.values())
+    return "albedo" not in frame.plan.sampled_unlit
 
 
 def albedo(state: SurfaceState) -> Buffers:

@@ -13,7 +13,7 @@ from ..modules.estimate import Estimate, passes_of
 from ..modules.filters import Filter
 from ..modules.measures import Measure
 from ..modules.occluders.base import OccluderKind
-from ..modules.passes import Pass
+from ..modules.passes import TERMS, Pass
 from ..modules.question import Question
 from ..modules.virtual_lights import VirtualLights
 from .doubts import is_own
@@ -119,6 +119,11 @@ class Plan:
         lights = [step.samples for step in self.lighting if isinstance(step, VirtualLights)]
         names = self.sampled(self.passes).union(*lights)
         return Asked(names, asks_for_occluders, bool(names & {*REFLECTIVE, PACKED}))
+
+    @cached_property
+    def sampled_unlit(self) -> frozenset[str]:
+        """The buffers that the passes sample, but for the terms of the lighting."""
+        return self.sampled(step for step in self.passes if step.shader not in TERMS.values())
 
     def sampled(self, passes: Iterable[Pass]) -> frozenset[str]:
         """The buffers that these passes sample, those of the occluder kind included."""
