@@ -209,7 +209,7 @@ def test_more_lights_than_the_largest_atlas_holds_are_refused(lab, boxes):
 def test_an_atlas_beyond_the_driver_names_the_largest_that_fits(lab, room, monkeypatch, module):
     monkeypatch.setitem(context.get().info, "GL_MAX_TEXTURE_SIZE", 1024)
     count = {"environment_vpl": "environment_lights", "instant_radiosity": "bounce_lights"}[module]
-    told = r"shadow maps of 256 pixels .* at most 1024x1024. At most 16 such maps fit, or \d+ maps of \d+ pixels"
+    told = r"shadow maps of 256 pixels .* at most 1024x1024. At most 16 such maps fit, or \d+ of \d+ pixels"
     scene = room.replace(environment=Environment.constant(1.0))
     with pytest.raises(ParameterError, match=told):
         lab.render(scene, module, size=SIZE, vpl_resolution=256, shadow_resolution=64, **{count: 64}).complete()
