@@ -70,6 +70,7 @@ class Lab:
         self._seen: tuple[tuple[object, ...], View, str | None] | None = None
         self._plan: tuple[tuple[object, ...], Plan, list[str]] | None = None
         self._virtual: dict[str, tuple[tuple[object, ...], VirtualLightMaps]] = {}
+        self._sky: tuple[object, ...] | None = None  # all that the background of the last picture depended on
         self._sizes: set[Size] = set()
         self._waiting: WeakSet[Frame] = WeakSet()  # for their light
 
@@ -374,9 +375,11 @@ class Lab:
         return buffers, runner.timer.result()
 
     def _picture(self, lights: Lights | None, display: Display, state: SurfaceState, _: Frame) -> Buffers:
-        """The picture of a frame."""
+        """The picture of a frame. The sky of a still camera is drawn once."""
         lights = lights or self._lights(state)
-        return lighting.image(state, lights, self._environments.of(lights.sky), display)
+        last, self._sky = self._sky, (state.frame.view.camera, state.frame.view.size, lights.sky, display)
+        still = self._sky if last == self._sky else None
+        return lighting.image(state, lights, self._environments.of(lights.sky), display, still)
 
     def _lit(self, lights: Lights | None, display: Display, state: SurfaceState, result: Frame) -> Buffers:
         """The light of a frame, and all else that waits."""

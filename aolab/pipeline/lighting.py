@@ -175,8 +175,13 @@ def in_one_pass(plan: Plan) -> bool:
     )
 
 
-def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display) -> Buffers:
-    """`image` of a module for which `in_one_pass` is true: one pass over surfaces, one over the background."""
+def image(
+    state: SurfaceState, lights: Lights, environment: moderngl.Texture, display: Display, sky: object = None
+) -> Buffers:
+    """`image` of a module for which `in_one_pass` is true: one pass over surfaces, one over the background.
+
+    With `sky`, the key of all that the background depends on, it is drawn once, and copied while the key is the same.
+    """
     frame = state.frame
     terms = [step for step in frame.plan.lighting if isinstance(step, Pass)]
     shown = _shown(environment, frame.view, display)
@@ -191,7 +196,11 @@ def image(state: SurfaceState, lights: Lights, environment: moderngl.Texture, di
     has = {"has_emission": "emission" in state.large}
     includes = {} if any(one.name == "indirect" for one in terms) else {"indirect.glsl": "lighting/no_indirect.glsl"}
     runner, size = frame.runner, frame.view.size
-    made = runner.run(replace(_IMAGE, constants=has, includes=includes), given, size, where=state.where)
+    step = replace(_IMAGE, constants=has, includes=includes)
+    if sky is not None:
+        behind = runner.kept("sky", sky, lambda: runner.run(_SKY, shown, size))
+        return runner.run(step, given, size, where=state.where, elsewhere=behind)
+    made = runner.run(step, given, size, where=state.where)
     return runner.run(_SKY, shown, size, targets=made, where=state.where.background)
 
 

@@ -105,3 +105,18 @@ def test_complete_computes_what_is_named(lab):
     before = frame.image.copy()
     assert set(frame.complete("image", "ambient").timings) >= {"image", *PLAIN}
     np.testing.assert_array_equal(frame.image, before)
+
+
+def test_the_sky_of_a_still_camera_is_drawn_once():
+    """The first picture draws the background alone, the second a whole sky, which is copied from then on."""
+    lab, lit = aolab.Lab(SIZE), scene()
+    first, second, third = (lab.render(lit, "ssao").image for _ in range(3))
+    np.testing.assert_array_equal(second, first)
+    np.testing.assert_array_equal(third, first)
+    fewer = lit.replace(instances=lit.instances[:-2])  # where these were, sky is seen
+    other = lit.replace(camera=replace(lit.camera, eye=(1.0, 1.5, 9)))
+    night = lit.replace(environment=Environment.constant((0.02, 0.03, 0.1)))
+    for changed, settings in ((fewer, {}), (other, {}), (night, {}), (lit, {"exposure": 0.5}), (lit, {})):
+        for _ in range(3):
+            fresh = aolab.Lab(SIZE).render(changed, "ssao", **settings).image
+            np.testing.assert_array_equal(lab.render(changed, "ssao", **settings).image, fresh)
