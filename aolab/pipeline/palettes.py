@@ -32,7 +32,7 @@ def is_enough(frame: FrameContext) -> bool:
     scene, module = frame.scene, frame.module
     if len(scene.meshes) > MOST or all(mesh.is_patterned for mesh in scene.meshes):
         return False
-    if module.scale < 1 or is_own(module) or not in_one_pass(frame.plan):
+    if is_own(module) or not in_one_pass(frame.plan):
         return False
     return "albedo" not in frame.plan.sampled_unlit
 

@@ -1,6 +1,7 @@
 """The G-buffer: the surfaces that the camera sees, before any light; and its smaller copy."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from ..gl.bindings import Bindings
 from ..modules.buffers import BACKGROUND_Z, ON_DEMAND, SURFACES
@@ -81,7 +82,9 @@ def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buf
         Bindings("the view", uniforms=view.uniforms, constants=view.constants),
         Bindings("the small view", uniforms=rays),
     ]
-    result = runner.run(_SHRINK, bindings, small.size)
+    drawn = {name: format for name, format in G_BUFFER.items() if name in buffers}  # a palette may stand for the albedo
+    step = replace(_SHRINK, outputs=drawn, constants={"with_albedo": "albedo" in drawn})
+    result = runner.run(step, bindings, small.size)
     others = {name: BESIDES[name] for name in buffers if name in BESIDES}
     names = list(others)
     for start in range(0, len(names), MOST_SOURCES):

@@ -7,6 +7,8 @@
 #include "lib/facets.glsl"
 #include "lib/shrink.glsl"
 
+const bool with_albedo;
+
 uniform sampler2D viewZ;
 uniform sampler2D viewNormal;
 uniform sampler2D albedo;
@@ -22,7 +24,7 @@ void main() {
     ivec2 nearest = nearestLarge(gl_FragCoord.xy, textureSize(viewZ, 0), ray_from_pixel, small_ray_from_pixel);
     smallViewZ = texelFetch(viewZ, nearest, 0).r;
     smallNormal = texelFetch(viewNormal, nearest, 0);
-    smallAlbedo = texelFetch(albedo, nearest, 0);
+    if (with_albedo) smallAlbedo = texelFetch(albedo, nearest, 0);
     if (isBackground(smallViewZ)) return;
     vec2 nearestRay = viewPosAt(vec2(nearest) + 0.5, -1.0, ray_from_pixel).xy;
     vec3 facet = facetAt(nearest, smallNormal.xyz);

@@ -33,11 +33,12 @@ def drawn(monkeypatch):
     return aolab.Lab(SIZE)
 
 
+@pytest.mark.parametrize("scale", [1.0, 0.5])
 @pytest.mark.parametrize("module", ["none", "ssao", "s3ho", "ssbn"])
-def test_the_light_is_that_of_a_drawn_albedo(lab, drawn, monkeypatch, module):
-    other = drawn.render(colored(), module).complete()
+def test_the_light_is_that_of_a_drawn_albedo(lab, drawn, monkeypatch, module, scale):
+    other = drawn.render(colored(), module, scale=scale).complete()
     monkeypatch.undo()
-    frame = lab.render(colored(), module, size=SIZE)
+    frame = lab.render(colored(), module, size=SIZE, scale=scale)
     assert "albedo" not in frame.kept.large
     np.testing.assert_allclose(frame.image.astype(float), other.image, atol=1)
     np.testing.assert_array_equal(frame["albedo"], other["albedo"])
@@ -47,7 +48,7 @@ def test_the_light_is_that_of_a_drawn_albedo(lab, drawn, monkeypatch, module):
 
 
 def test_the_albedo_is_drawn_for_passes_that_read_it(lab):
-    for module, options in (("ssdo", {"bounces": 1}), ("ambient_transfer", {}), ("ssao", {"scale": 0.5})):
+    for module, options in (("ssdo", {"bounces": 1}), ("ambient_transfer", {}), ("ssdo", {"bounces": 1, "scale": 0.5})):
         frame = lab.render(colored(), module, size=SIZE, **options)
         assert "albedo" in frame.kept.large, module
 
