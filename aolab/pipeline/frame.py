@@ -85,10 +85,16 @@ class Frame:
         """
         for name in names:
             self._check_name(name)
-        wanted = {*(names or self.buffers)} - self.derived.keys()
-        while waiting := wanted - self.made.keys():
-            handed(self._compute)(max(self.later, key=lambda one: len(waiting.intersection(one.names))))
+        wanted = {*(names or self.buffers)}
+        while one := self._next(wanted):
+            handed(self._compute)(one)
         return self
+
+    def _next(self, wanted: set[str]) -> Later | None:
+        """Of all that waits, the part with the most of the `wanted` buffers; None if they are all there."""
+        waiting = wanted - self.made.keys()
+        useful = [one for one in self.later if waiting.intersection(one.names)]
+        return max(useful, key=lambda one: len(waiting.intersection(one.names)), default=None)
 
     def _compute(self, one: Later) -> None:
         """Compute the buffers of `one`."""
@@ -98,7 +104,7 @@ class Frame:
         with noting(self.notes):
             made, timings = one.make(self)
         self.made = {**made, **self.made}
-        self.later = [other for other in self.later if not self.made.keys() >= {*other.names}]
+        self.later = [other for other in self.later if other is not one and not self.made.keys() >= {*other.names}]
         for name, milliseconds in timings.items():
             self.timings[name] = self.timings.get(name, 0.0) + milliseconds
         self.frame_ms += (perf_counter() - start) * 1e3

@@ -136,7 +136,7 @@ class Geometry:
             for instance in scene.instances:
                 groups[instance.mesh].append(instance.world_from_local)
             numbered = [(mesh, number, groups[mesh]) for number, mesh in enumerate(groups)]
-            numbered.sort(key=lambda entry: entry[0].is_patterned)
+            numbered.sort(key=lambda entry: entry[0] in scene.patterned)
             self._scenes[scene] = [(mesh, number, _placements(some, scene)) for mesh, number, some in numbered]
         return self._scenes[scene]
 

@@ -39,7 +39,7 @@ from .last_frame import NO_LAST, last_frame
 from .lighting import Display, Lights, Lit, ToneMap
 from .palettes import Palettes
 from .pass_runner import Buffers, PassRunner, Where
-from .plan import Asked, Plan
+from .plan import Plan
 from .rasterizer import DepthTargets, Rasterizer
 from .reflective import DEFAULT_SIZE as MAP_SIZE
 from .reflective import ReflectiveMaps, draw_reflective
@@ -253,14 +253,14 @@ class Lab:
 
     def _state(self, frame: FrameContext, drawn: moderngl.Query) -> SurfaceState:
         """The surfaces, whose pixels `drawn` counts, and the estimate of a module that does not depend on light."""
-        module, view, runner, asked = frame.module, frame.view, frame.runner, frame.plan.asked
+        module, view, runner = frame.module, frame.view, frame.runner
         with self._lending(runner):
             depth = runner.take(view.size, DEPTH)
             with drawn:
-                large = self._surfaces(frame, asked, depth)
+                large = self._surfaces(frame, depth)
             small_view = view.scaled(module.scale) if module.scale < 1 else view
             small = surfaces.shrink(runner, large, view, small_view) if module.scale < 1 else large
-            hiding = occluders(frame, asked, large)
+            hiding = occluders(frame, large)
             state = SurfaceState(frame, large, small, small_view, hiding, {}, Where(depth))
             if not module.lit:
                 state = replace(state, estimate=estimate(state, frame.plan.estimate))
@@ -268,14 +268,14 @@ class Lab:
         lent, runner.lent = runner.lent, []
         return lend(state, self._pool, lent)
 
-    def _surfaces(self, frame: FrameContext, asked: Asked, depth: moderngl.Texture) -> Buffers:
+    def _surfaces(self, frame: FrameContext, depth: moderngl.Texture) -> Buffers:
         """The surface buffers at full size. Where a palette is enough, `palette` stands in the place of `albedo`."""
-        formats = surface_formats(frame, asked)
+        formats = surface_formats(frame)
         if palettes.is_enough(frame) and not self._programs.generation:  # an edited shader may read more
             buffers = self._palettes.surfaces(frame, formats, depth)
         else:
             buffers = frame.rasterizer.surfaces([frame.view], formats=formats, depth=depth)
-        if asked.buffers & {"facetNormal", "last_facetNormal"}:
+        if frame.plan.asked.buffers & {"facetNormal", "last_facetNormal"}:
             buffers |= surfaces.facet_normals(frame.runner, buffers, frame.view)
         return buffers
 
@@ -430,18 +430,18 @@ def _stored(state: SurfaceState) -> dict[str, Callable[[SurfaceState, Frame], Bu
     return passes
 
 
-def surface_formats(frame: FrameContext, asked: Asked) -> dict[str, str]:
+def surface_formats(frame: FrameContext) -> dict[str, str]:
     """The buffers of surfaces to draw: those of every frame, and those that a pass of the module samples."""
-    names = asked.buffers - {"facetNormal", "facets"}  # the normals are made of the facets
+    names = frame.plan.asked.buffers - {"facets"}
     names |= {"facets"} if frame.scene.is_smooth else set()
     names |= {"geometricNormal"} if frame.scene.bends_normals else set()
     names |= {"emission"} if frame.scene.emits else set()
     return surfaces.G_BUFFER | {name: format for name, format in surfaces.BESIDES.items() if name in names}
 
 
-def occluders(frame: FrameContext, asked: Asked, large: Buffers) -> Occluders:
+def occluders(frame: FrameContext, large: Buffers) -> Occluders:
     """The occluders of the module's choice; nothing is drawn where no pass of the module includes "occluders.glsl"."""
-    if not asked.occluders:
+    if not frame.plan.asked.occluders:
         return Occluders(frame.plan.occluders.bindings())
     return frame.plan.occluders.draw(frame.rasterizer, frame.view, large, frame.module.sends())
 

@@ -30,7 +30,7 @@ def is_enough(frame: FrameContext) -> bool:
     Some mesh has one albedo; and the albedo is read by terms of the lighting alone, which read the palette too.
     """
     scene, module = frame.scene, frame.module
-    if len(scene.meshes) > MOST or all(mesh.is_patterned for mesh in scene.meshes):
+    if len(scene.meshes) > MOST or not scene.plain:
         return False
     if is_own(module) or not in_one_pass(frame.plan):
         return False
@@ -54,10 +54,9 @@ class Palettes:
         """The surface buffers with `palette` in the place of `albedo`, and `patterns` for meshes with patterns."""
         scene, views, draw = frame.scene, [frame.view], frame.rasterizer.surfaces
         without = {name: format for name, format in formats.items() if name != "albedo"}
-        patterned = {mesh for mesh in scene.meshes if mesh.is_patterned}
-        buffers = draw(views, formats=without, depth=depth, only={*scene.meshes} - patterned)
-        if patterned:
-            buffers = draw(views, formats=formats, depth=depth, only=patterned, onto=buffers)
+        buffers = draw(views, formats=without, depth=depth, only=scene.plain)
+        if scene.patterned:
+            buffers = draw(views, formats=formats, depth=depth, only=scene.patterned, onto=buffers)
             buffers["patterns"] = buffers.pop("albedo")
         return buffers | {"palette": self._of(scene)}
 
@@ -66,7 +65,7 @@ class Palettes:
         if scene not in self._textures:
             colors = np.zeros((len(scene.meshes), 4), np.float16)
             for color, mesh in zip(colors, scene.meshes, strict=True):
-                if not mesh.is_patterned:
+                if mesh in scene.plain:
                     color[:] = *stored(mesh.material.base_color), 1
             self._textures[scene] = make((len(colors), 1), _FORMAT, colors.tobytes())
         return self._textures[scene]

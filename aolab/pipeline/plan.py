@@ -109,8 +109,11 @@ class Plan:
 
     @cached_property
     def passes(self) -> list[Pass]:
-        """Every pass of the estimate, the lighting and the bounce."""
-        return passes_of([self.estimate, *self.lighting, *filter(None, [self.bounce])])
+        """Every pass of the estimate, the lighting and the bounce, and of their filters."""
+        steps = [self.estimate, *self.lighting, *filter(None, [self.bounce])]
+        return passes_of(steps) + [
+            of for step in steps if isinstance(step, Estimate) for of in (step.filter or self.filter).all_passes()
+        ]
 
     @cached_property
     def asked(self) -> Asked:

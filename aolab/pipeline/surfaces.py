@@ -11,8 +11,8 @@ from ..scene.view import View, ray_scale_offset
 from .pass_runner import Buffers, PassRunner
 
 G_BUFFER = {name: buffer.format for name, buffer in SURFACES.items()}
-# drawn besides, where they are needed
-BESIDES = {**{name: buffer.format for name, buffer in ON_DEMAND.items()}, "facets": "RG16"}
+# drawn besides, where they are needed; `facetNormal` is made of the facets
+BESIDES = {**{name: buffer.format for name, buffer in ON_DEMAND.items() if name != "facetNormal"}, "facets": "RG16"}
 STORED = "palette", "patterns", "facets"  # in the place of `albedo` (see palettes.py) and of `facetNormal`
 # off the screen, where nothing is known, the depth is the background's: nothing blocks
 _OUTSIDE = {"viewZ": BACKGROUND_Z}
@@ -24,7 +24,7 @@ _SHRINK = Pass(
     writes={"smallViewZ": "viewZ", "smallNormal": "viewNormal", "smallAlbedo": "albedo"},
     outside=_OUTSIDE,
 )
-_FACETS = Pass("facets", "pipeline/facets.frag", {"facetNormal": BESIDES["facetNormal"]})
+_FACETS = Pass("facets", "pipeline/facets.frag", {"facetNormal": ON_DEMAND["facetNormal"].format})
 
 
 def g_buffer(name: str, formats: Mapping[str, str] = G_BUFFER, peel: bool = False, atlas: bool = False) -> GeometryPass:
@@ -85,7 +85,8 @@ def shrink(runner: PassRunner, buffers: Buffers, view: View, small: View) -> Buf
     drawn = {name: format for name, format in G_BUFFER.items() if name in buffers}  # a palette may stand for the albedo
     step = replace(_SHRINK, outputs=drawn, constants={"with_albedo": "albedo" in drawn})
     result = runner.run(step, bindings, small.size)
-    others = {name: BESIDES[name] for name in buffers if name in BESIDES}
+    formats = {**BESIDES, **_FACETS.outputs}
+    others = {name: formats[name] for name in buffers if name in formats}
     names = list(others)
     for start in range(0, len(names), MOST_SOURCES):
         some = {name: others[name] for name in names[start : start + MOST_SOURCES]}

@@ -142,6 +142,16 @@ class Scene:
         return tuple(dict.fromkeys(instance.mesh for instance in self.instances))
 
     @cached_property
+    def patterned(self) -> frozenset[Mesh]:
+        """The meshes over which the albedo may vary."""
+        return frozenset(mesh for mesh in self.meshes if mesh.is_patterned)
+
+    @cached_property
+    def plain(self) -> frozenset[Mesh]:
+        """The meshes with one albedo."""
+        return frozenset(self.meshes) - self.patterned
+
+    @cached_property
     def instance_bounds(self) -> np.ndarray:
         """(instances, 2, 3) float64: the bounds of each."""
         return np.array([instance.bounds for instance in self.instances])

@@ -1,6 +1,6 @@
 // Lambert's azimuthal equal-area map of directions, around +z: the uv of a direction n is 0.5 + 0.5 n.xy / sqrt(2 + 2 n.z). The
-// centre is +z, the circle of radius 0.5 is -z, which has no uv of its own. The map keeps areas, so that its precision is
-// nearly the same everywhere.
+// centre is +z, the circle of radius 0.5 is -z, which has no uv of its own. With 16 bits a coordinate, directions up to 30°
+// behind the plane of x and y come back with an error below 1e-4. NumPy twin: _facet, aolab/notebook/microscope/receiver.py.
 
 // `dir`: unit. Returns uv in [0, 1].
 vec2 azimuthalUv(vec3 dir) {

@@ -9,6 +9,8 @@ from small_scenes import WHITE
 import aolab
 from aolab import Camera, Mesh
 from aolab.modules import MODULES
+from aolab.modules.filters import Filter
+from aolab.modules.filters.base import over_sources
 from aolab.truth.hemisphere import frames
 from aolab.truth.points import Points
 
@@ -73,15 +75,27 @@ def test_normals_of_triangles_are_drawn_where_they_differ(lab):
     assert np.abs(facets @ known.T).max(axis=1).min() > 0.999
 
 
-def test_a_shader_may_sample_the_normals_of_triangles(lab, tmp_path):
-    path = tmp_path / "facing.frag"
-    path.write_text(
-        "uniform sampler2D facetNormal;\nout float visibility;\n"
-        "void main() { visibility = texelFetch(facetNormal, ivec2(gl_FragCoord.xy), 0).z; }\n"
-    )
+def test_a_direction_comes_back_from_its_map(glsl):
+    directions = np.random.default_rng(2).normal(size=(2000, 3))
+    directions = directions[directions[:, 2] > -0.5 * np.linalg.norm(directions, axis=1)]
+    rows = np.pad(directions / np.linalg.norm(directions, axis=1)[:, None], ((0, 0), (0, 1)))
+    known = np.array([(0, 0, 1, 0), (1, 0, 0, 0), (0, -1, 0, 0)])
+    uv = glsl("lib/azimuthal.glsl", "result.xy = azimuthalUv(x.xyz);", known)[:, :2]
+    np.testing.assert_allclose(uv, [(0.5, 0.5), (0.5 + np.sqrt(1 / 8), 0.5), (0.5, 0.5 - np.sqrt(1 / 8))], atol=1e-6)
+    # the texture has whole numbers up to 65535
+    back = "result.xyz = azimuthalDirection(round(azimuthalUv(x.xyz) * 65535.0) / 65535.0);"
+    found = glsl("lib/azimuthal.glsl", back, rows)[:, :3]
+    np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-5)
+    assert np.linalg.norm(found - rows[:, :3], axis=1).max() < 1e-4
 
+
+def test_a_shader_may_sample_the_normals_of_triangles(lab):
     class Facing(aolab.SSAO):
-        shader = path
+        shader = """
+        uniform sampler2D facetNormal;
+        out float visibility;
+        void main() { visibility = texelFetch(facetNormal, ivec2(gl_FragCoord.xy), 0).z; }
+        """
 
     for scene in (small_scenes.of(tetrahedron()), small_scenes.of(small_scenes.box((-1, 0, -1), (1, 1, 1)))):
         for scale in (1.0, 0.5):
@@ -91,6 +105,29 @@ def test_a_shader_may_sample_the_normals_of_triangles(lab, tmp_path):
                 np.testing.assert_array_equal(frame["visibility"][frame.mask], facets[frame.mask][:, 2])
             known = np.unique(facets[frame.mask][:, 2].round(2))
             assert np.isin(frame["visibility_raw"][np.isfinite(frame["visibility_raw"])].round(2), [0, *known]).all()
+
+
+@pytest.mark.parametrize("name", ["albedo", "facetNormal", "uv"])
+@pytest.mark.parametrize("scale", [1.0, 0.5])
+def test_a_filter_of_ones_own_may_read_any_buffer_of_the_surfaces(lab, name, scale):
+    class Own(Filter):
+        name = "own"
+        at_full_size = True
+
+        def passes(self, formats):
+            text = f"""
+            #include "lib/sources.glsl"
+            uniform sampler2D {name};
+            void main() {{ results[0] = texelFetch({name}, ivec2(gl_FragCoord.xy), 0).xxxx; }}
+            """
+            return [over_sources("own", text, formats)]
+
+    frame = lab.render(small_scenes.of(tetrahedron()), "ssao", size=SIZE, filter=Own(), scale=scale)
+    shown = frame["visibility"][frame.mask]
+    if name in frame:
+        np.testing.assert_allclose(shown, frame[name][frame.mask][:, 0], atol=1e-3)
+    else:
+        assert (shown == 0).all()  # the body has no uv
 
 
 def test_normals_of_triangles_are_made_when_they_are_read(lab):

@@ -110,15 +110,13 @@ def test_more_meshes_than_half_floats_count_have_no_palette(lab, monkeypatch):
     assert "albedo" in lab.render(colored(), "ssao", size=SIZE).kept.large
 
 
-def test_a_module_of_ones_own_reads_the_albedo(lab, tmp_path):
-    path = tmp_path / "red.frag"
-    path.write_text(
-        "uniform sampler2D albedo;\nout float visibility;\n"
-        "void main() { visibility = texelFetch(albedo, ivec2(gl_FragCoord.xy), 0).r; }\n"
-    )
-
+def test_a_module_of_ones_own_reads_the_albedo(lab):
     class Mine(aolab.SSAO):
-        shader = path
+        shader = """
+        uniform sampler2D albedo;
+        out float visibility;
+        void main() { visibility = texelFetch(albedo, ivec2(gl_FragCoord.xy), 0).r; }
+        """
 
     frame = lab.render(colored(), Mine(filter="none"), size=SIZE)
     np.testing.assert_array_equal(frame["visibility"][frame.mask], frame["albedo"][..., 0][frame.mask])

@@ -34,6 +34,11 @@ class Filter(Choice):
         """The passes over up to four buffers, `formats` (name: format); each reads the results of the one before it."""
         return []
 
+    def all_passes(self) -> list[Pass]:
+        """Every pass, that of the upsampling too, over a single buffer."""
+        one = {"visibility": "R16F"}
+        return [*self.passes(one), over_sources("upsample", self.upsampling, one)]
+
 
 def over_sources(name: str, shader: str, formats: Mapping[str, str], **constants: bool | int | float) -> Pass:
     """A pass that treats up to four buffers alike: it reads them as sources and writes each as a result."""
